@@ -127,7 +127,7 @@ def fit_many(
         Those of the configuration if not given.
     directory
         Folder for the table, as ``fits.h5``, ``fits.csv`` and ``fits.json``, and a file for each
-        curve in ``curves``. A fit that it contains already is not repeated.
+        curve in ``curves``, with all of its fit. One that it contains already is not repeated.
     progress
         Show a bar on a terminal or in a notebook; elsewhere, a line for each curve.
     config, **options

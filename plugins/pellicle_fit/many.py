@@ -55,6 +55,8 @@ _BYTES_PER_POINT = 2000
 """Memory of a fit, approximately."""
 _BATCH = 500
 """Curves that are in memory at once."""
+_PAGES = 20
+"""Most pages of the contact sheet, a curve of which takes 0.04 s."""
 
 
 @dataclass(frozen=True)
@@ -100,11 +102,11 @@ def fit_sources(
             if part is None:
                 check_writable(directory / "fits.h5")
             check_writable(directory / _JOURNAL / "fit.json")
-        with BatchProgress(0, 0, progress) as bar:
+        with BatchProgress(0, 0, progress, "curves") as bar:
             curves = iter(sources)
             while batch := [*islice(curves, _BATCH)]:
                 made = [_task(config, source, directory, fits, progress) for source in batch]
-                bar.expect(len(fits.rows), made.count(None))
+                bar.expect(max(len(fits.rows), *(s.total for s in batch)), made.count(None))
                 rows = fits.rows[-len(batch) :]
                 near = [()] * len(batch) if config.every_rival else alike(config, batch, rows)
                 for chosen, fit_one in passes(made, near, rows, part, work):
@@ -114,6 +116,8 @@ def fit_sources(
                     ]
                     mapped(config.executor, fit_one, tasks, dict, keep, bar)
                 tried += [(task.row, task.path) for task in made if task]
+                for row in rows:
+                    row.pack()
         if part is not None:
             left = sum(row.is_open and not (path and is_file(path)) for row, path in tried)
             return replace(fits, rows=[row for row, _ in tried if not row.is_open], left=left)
@@ -122,7 +126,7 @@ def fit_sources(
         fits.notes += [*notes, *of_maps]
         if directory is not None:
             tables = _write(fits, config, began, directory)
-            fits.files = (*tables, *save_population(fits, directory, formats))
+            fits.files = (*tables, *save_population(fits, directory, formats, _PAGES))
     return fits
 
 
@@ -150,6 +154,7 @@ def _task(
         if directory is not None:
             identity = _identity(config, indenter, curve, [*common])
             path = directory / _JOURNAL / f"{identity[:16]}.json"
+            row.kept = f"{_JOURNAL}/{path.name}"
             if is_file(path) and (earlier := _earlier(path, row, fits)):
                 # The file may have another name now.
                 earlier["curves"][0] |= {"name": source.name, "data": data_of(curve, config)}
@@ -160,7 +165,7 @@ def _task(
         config = config.model_copy(update={"uncertainty": weighed})
         ready = problem(config, [source], progress=progress)
     except PellicleError as error:
-        row.failure = _failure(error, row.name)
+        row.failure = _in_a_line(source.reason(error))
         return None
     # An executor need not pickle.
     serial = registry().make(Executor, {"type": "serial"})
@@ -184,7 +189,8 @@ def _keep(task: FitTask, outcome: dict[str, Any] | Exception, *, writes: bool) -
     if isinstance(outcome, LockedError):
         return FITTED_ELSEWHERE, False
     if isinstance(outcome, Exception):
-        row.failure = _failure(outcome, row.name)
+        kind = "" if isinstance(outcome, PellicleError) else f"{type(outcome).__name__}: "
+        row.failure = f"{kind}{_in_a_line(str(outcome))}"
     else:
         if writes and task.path is not None:
             write_sealed(outcome, task.path)
@@ -234,18 +240,13 @@ def _identity(
     return digest.hexdigest()
 
 
-def _failure(error: Exception, name: str) -> str:
-    file, _, label = name.rpartition(":")
-    text = str(error).removeprefix(f"{name}: ").removeprefix(f"{file}: ")
-    text = text.removeprefix(f"curve {label}: ").replace(":\n  ", ": ")
-    reason = "; ".join(text.splitlines()) or "no reason given"
-    kind = "" if isinstance(error, PellicleError) else f"{type(error).__name__}: "
-    return f"{kind}{reason}"
+def _in_a_line(reason: str) -> str:
+    return "; ".join(reason.replace(":\n  ", ": ").splitlines()) or "no reason given"
 
 
 def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> tuple[Path, ...]:
     """Write the tables of the curves and of the groups, and return their paths."""
-    record = record_of(config, [row.fit.curve["data"] for row in fits.rows if row.is_fitted], began)
+    record = record_of(config, (row.fit.curve["data"] for row in fits.rows if row.is_fitted), began)
     attributes = {
         "configuration": config.to_json(),
         "versions": ", ".join(f"{name} {number}" for name, number in record["versions"].items()),
@@ -256,12 +257,12 @@ def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> 
     results.write(dataset.assign_attrs(command="fit"), hdf5)
     heads = {name: results.header(str(name), of) for name, of in dataset.data_vars.items()}
     frame = dataset.to_dataframe().rename(columns=heads).assign(**attributes)
-    for path, content in ((text, frame.reset_index()), (groups, pd.DataFrame(summary(fits.rows)))):
+    lines = summary(fits.rows)
+    for path, content in ((text, frame.reset_index()), (groups, pd.DataFrame(lines))):
         with atomic_write(path) as part:
             content.to_csv(part, index=False, na_rep="nan")
-    whole = fits.to_dict() | {"configuration": fits.configuration} | record
-    # What is drawn again has no other source.
-    for one, row in zip(whole["curves"], fits.rows, strict=True):
-        one["sketch"] = as_json(row.sketch)
     paper = save_tables(fits.rows, directory / "fits-table")
-    return hdf5, text, groups, *paper, write_sealed(whole, directory / "fits.json")
+    whole = {"groups": lines, "notes": fits.notes, "configuration": fits.configuration} | record
+    # What is drawn again has no other source.
+    curves = (row.to_dict() | {"sketch": as_json(row.sketch)} for row in fits.rows)
+    return hdf5, text, groups, *paper, write_sealed(whole, directory / "fits.json", curves)

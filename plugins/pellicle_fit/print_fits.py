@@ -6,7 +6,7 @@ from pathlib import Path
 
 from pellicle.cli import echo, print_table
 
-from .population.fits import ManyFits, summary
+from .population.fits import ManyFits
 from .record import Record
 from .report import tables
 from .words.population import advice_of_population, by_text, sentences_of_population
@@ -48,7 +48,6 @@ def print_fits(fits: ManyFits, *, quiet: bool, directory: Path | None, si: bool)
         print_table(tables.rows(fits.rows, si=si), si=si)
     else:
         echo(f"{len(fits.rows)} curves: see {directory / 'fits.csv'}")
-    if summary(fits.rows):
-        print_table(tables.groups(fits.rows, si=si), si=si)
+    print_table(tables.groups(fits.rows, si=si), si=si)
     for line in [*sentences_of_population(fits.rows), *advice_of_population(fits.rows)]:
         echo(line)

@@ -168,6 +168,11 @@ class Record:
         """Return whether there is no sign of what was asked for, which has the quantity."""
         return name in self.data.get("if_present", ()) and name not in MODULI
 
+    def common_errors(self, name: str) -> dict[str, float]:
+        """Return by how much each error that curves share moves a quantity [SI], by its name."""
+        errors: dict[str, dict[str, float]] = self.data.get("common_errors", {})
+        return errors.get(name, {})
+
     def to_dict(self) -> dict[str, Any]:
         """Return the fit as JSON data."""
         return dict(self.data)

@@ -67,14 +67,15 @@ class StoredFits:
     """The fits beside a table ``fits.h5``, which ``fits.json`` holds with all that is shown."""
 
     def __init__(self, table: Path) -> None:
-        self.folder, self.whole = table.parent, read_sealed(table.with_suffix(".json"))
-        rows = [Row.of_dict(curve) for curve in self.whole["curves"]]
+        self.folder = table.parent
+        self.whole = read_sealed(table.with_suffix(".json"), Row.of_dict)
+        rows = self.whole.pop("curves")
         self.fits = ManyFits(rows, notes=self.whole["notes"], maps=force_maps(rows)[0])
 
     def show(self, *, si: bool, json: bool) -> None:
         """Print what ``pellicle fit`` printed; exit code 1 if some curves could not be fitted."""
         if json:
-            print_json(self.whole)
+            print_json(self.fits.to_dict() | self.whole)
         else:
             print_fits(self.fits, quiet=False, directory=self.folder, si=si)
         exit_by_fits(self.fits)

@@ -86,6 +86,19 @@ def test_a_study_has_a_line_for_each_run_at_work() -> None:
         assert "2 N/m" in two
 
 
+@pytest.mark.usefixtures("screen")
+def test_what_was_done_before_is_not_fast() -> None:
+    """Tasks that an earlier call finished say nothing of the time that is left."""
+    with BatchProgress(0, 0, True, "curves") as progress:
+        assert progress._bars
+        progress.expect(100, 0)
+        progress.finished(ONE, "fitted", failed=False)
+        progress.expect(100, 90)
+        (task,) = progress._bars.tasks
+        assert (task.description, task.completed, task.total) == ("curves", 91, 100)
+        assert task.speed is None
+
+
 def test_a_log_has_a_line_for_each_run(capfd: pytest.CaptureFixture[str]) -> None:
     """Without a terminal there are no control codes, and nothing before a run is done."""
     long = Job(f"kernel.tension = {'1' * 200} [N/m]")

@@ -129,23 +129,26 @@ class BatchProgress(_Progress):
     """Shows a bar for all tasks and one for each that runs, on a terminal or in a notebook.
 
     Elsewhere there is a line for each finished task. Ctrl-C takes effect at the next report of a
-    task. Nothing is shown if not ``enabled``.
+    task. Nothing is shown if not ``enabled``. The bar is labelled by what the ``tasks`` are.
     """
 
-    def __init__(self, total: int, done: int, enabled: bool) -> None:
+    def __init__(self, total: int, done: int, enabled: bool, tasks: str = "runs") -> None:
         super().__init__(enabled)
         self._enabled = enabled
         self._total, self._done, self._failed = total, done, 0
         self._running: dict[str, tuple[rich.progress.TaskID, float]] = {}
         if self._bars:
             self._all = self._bars.add_task(
-                "runs", total=float(total), completed=done, message=self._count()
+                tasks, total=float(total), completed=done, message=self._count()
             )
 
     def expect(self, total: int, done: int) -> None:
         """Set the number of tasks, and count ``done`` more that were finished before."""
         self._total = total
         self._done += done
+        if done and self._bars:
+            # What was finished before says nothing of the time that is left.
+            self._bars.reset(self._all, completed=self._done)
         self._advance()
 
     def report(self, task: Task, message: ProgressMessage | str) -> None:

@@ -46,6 +46,9 @@ class End(Enum):
     NOT_SOUGHT = "not sought"
 
 
+_ENDS = {end.name.lower(): end for end in End}
+
+
 @dataclass(frozen=True)
 class Estimate:
     """A quantity of a fit: its value in SI and the ends of its 95 % interval."""
@@ -88,7 +91,7 @@ class Estimate:
         value = np.nan if data["value"] is None else data["value"]
         known = {**data, "value": value}
         if "ends" in data:
-            known["ends"] = tuple(End[name.upper()] for name in data["ends"])
+            known["ends"] = tuple(_ENDS[name] for name in data["ends"])
         return cls(**known)
 
 

@@ -41,12 +41,21 @@ class Source(NamedTuple):
     """What ``per_file`` or its row of a table of files says of it, by name."""
     file: str = ""
     """The file, or the name of a curve that was given by its numbers."""
+    label: str = ""
+    """What tells it from others in the file."""
     map: str = ""
     """File of the force map that the curve belongs to: its own, or the table of files."""
+    total: int = 0
+    """Number of all curves, of files that were not opened yet one each; 0 if it is not known."""
 
     def named(self, error: PellicleError, hint: str = "") -> ConfigError:
         """Return an error with the name of the source in front, once, and a hint at the end."""
-        return ConfigError(f"{self.name}: {str(error).removeprefix(f'{self.name}: ')}{hint}")
+        return ConfigError(f"{self.name}: {self.reason(error)}{hint}")
+
+    def reason(self, error: Exception) -> str:
+        """Return what an error says, without file and curve, with which readers begin."""
+        text = str(error).removeprefix(f"{self.file}: ").removeprefix(f"curve {self.label}: ")
+        return text.removeprefix(f"{self.name}: ")
 
 
 def gather(
@@ -57,7 +66,8 @@ def gather(
     Each list in ``per_file`` has one value for each file.  In a table that lists files, the columns
     x and y are the place on the sample.
     """
-    for file, fields, table in _listed(curves, per_file, calibration.columns or {}):
+    listed, opened = [*_listed(curves, per_file, calibration.columns or {})], 0
+    for number, (file, fields, table) in enumerate(listed, 1):
         site: Site | None = None
         readers: Readers = {}
         origin: dict[str, Any] = {}
@@ -75,11 +85,12 @@ def gather(
                 readers = {"": partial(Measurement, **arrays)}
             else:
                 readers = read(file, own)
-                with file.open("rb") as opened:
-                    digest = hashlib.file_digest(opened, "sha256").hexdigest()
+                with file.open("rb") as content:
+                    digest = hashlib.file_digest(content, "sha256").hexdigest()
                 origin = {"file": str(file), "sha256": digest}
         except PellicleError as error:
             yield source(str(file), error)
+        opened += len(readers) or 1
         for label, reader in readers.items():
             curve: Measurement | PellicleError
             try:
@@ -89,7 +100,8 @@ def gather(
             except PellicleError as error:
                 curve = error
             name = f"{file}:{label}" if label else str(file)
-            yield source(name, curve, map=str(table if site else file))
+            total = opened + len(listed) - number
+            yield source(name, curve, label=label, map=str(table if site else file), total=total)
 
 
 def _listed(

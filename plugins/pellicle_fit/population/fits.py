@@ -15,12 +15,14 @@ import xarray as xr
 from pellicle_fit.estimation.intervals import threshold_of
 from pellicle_fit.record import ENDS, OVER_TIED
 
-from .row import SHOWN, Row, counted, units
+from .row import SHOWN, Row, units
 
 QUARTILES = "minimum", "lower_quartile", "median", "upper_quartile", "maximum"
 _MEASURED = {"spring_constant": "N/m", "sensitivity": "m/V", "poissons_ratio": "1"}
 """Numbers in the data of a row, and their units."""
 _COUNTS = "failed_checks", "messages"
+_NAMES = (*OVER_TIED, *(name for name in SHOWN if name not in OVER_TIED))
+"""Quantities that have quartiles."""
 
 
 @dataclass
@@ -100,49 +102,48 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
     and ``no_sign`` show no sign of what has the parameter.  Parameters that were fixed have no
     line.  Where curves share an error of the calibration, there is a ``common_error``.
     """
+    # A row is unpacked once for all names.
     fitted = [
-        (
-            name,
-            row.group,
-            e.unit,
-            e.value,
-            not e.is_narrow,
-            row.fit.has_no_sign(name),
-            row.outlier,
-            row,
-        )
-        for name in dict.fromkeys((*OVER_TIED, *SHOWN))
-        for row, e in counted(rows, name).items()
+        (name, row.group, e, fit.has_no_sign(name), row.outlier, fit.common_errors(name))
+        for row in rows
+        if row.accepted
+        for fit in (row.fit,)
+        for name in _NAMES
+        if (e := fit.best(name)) is not None
     ]
-    columns = "parameter", "group", "unit", "value", "open", "no_sign", "outlier", "row"
+    columns = "parameter", "group", "estimate", "no_sign", "outlier", "errors"
     frame = pd.DataFrame(fitted, columns=columns)
     curves, lines = Counter(row.group for row in rows), []
-    for name, whole in frame.groupby("parameter", sort=False):
+    for name in _NAMES:
+        whole = frame[frame["parameter"] == name]
+        if all(e.held for e in whole["estimate"]):
+            continue
         groups = whole.groupby("group", sort=False) if len(curves) > 1 else ()
         parts = [(label(group), curves[group], part) for group, part in groups]
         for group, count, part in (*parts, ("all", len(rows), whole)):
-            quartiles = part["value"].quantile([0, 0.25, 0.5, 0.75, 1]).tolist()
+            estimates = [*part["estimate"]]
+            values = pd.Series([e.value for e in estimates])
             line = {
                 "group": group,
                 "parameter": name,
-                "unit": part["unit"].iloc[0],
+                "unit": estimates[0].unit,
                 "curves": count,
                 "n": len(part),
-                "open": int(part["open"].sum()),
+                "open": sum(not e.is_narrow for e in estimates),
                 "no_sign": int(part["no_sign"].sum()),
                 "outliers": int(part["outlier"].sum()),
-                **dict(zip(QUARTILES, quartiles, strict=True)),
+                **dict(zip(QUARTILES, values.quantile([0, 0.25, 0.5, 0.75, 1]), strict=True)),
             }
-            lines.append(line | common_error(part["row"], name))
+            lines.append(line | common_error(part["errors"]))
     return lines
 
 
-def common_error(rows: Iterable[Row], name: str) -> dict[str, float]:
+def common_error(errors: Iterable[dict[str, float]]) -> dict[str, float]:
     """Return the ``common_error`` of the median of a quantity, nothing if no curve has one.
 
     It is half of a 95 % interval [SI]: by so much the calibration that curves share may move all.
     """
-    moved = pd.DataFrame([row.fit.data.get("common_errors", {}).get(name, {}) for row in rows])
+    moved = pd.DataFrame([*errors])
     deviation = float(np.sqrt((moved.fillna(0.0).median() ** 2).sum()))
     return {"common_error": threshold_of(np.inf) ** 0.5 * deviation} if moved.size else {}
 

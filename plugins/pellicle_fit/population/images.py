@@ -12,11 +12,14 @@ from numpy.typing import NDArray
 from pellicle.arrays import Array
 from pellicle_fit.estimation.coordinates import CONTACT_POINT
 from pellicle_fit.record import ENDS
+from pellicle_fit.selection.verdict import Verdict
 
 from .row import Row, units
 
 CONTACT_HEIGHT = "contact_height"
 """Minus the contact point: the height of the surface over the zero of the instrument [m]."""
+VERDICT = "verdict"
+"""Number of the verdict, from 1, as `Verdict` lists them."""
 _OF_BASELINE = "offset", "slope"
 _QUALITY = "r_squared", "chi_squared", "indentation", "largest_force"
 _OFF = 0.25
@@ -48,9 +51,10 @@ def _images(rows: Sequence[Row], places: Array, x: Array, y: Array) -> xr.Datase
     frame = pd.DataFrame([_numbers(row) for row in rows if row.accepted], index=pixels[accepted])
     whole = pd.MultiIndex.from_product([range(y.size), range(x.size)], names=["y", "x"])
     images = frame[~frame.index.duplicated(keep="last")].reindex(whole).to_xarray()
-    unit_of = units() | {f"{CONTACT_HEIGHT}{end}": "m" for end in ENDS}
+    unit_of = units() | {f"{CONTACT_HEIGHT}{end}": "m" for end in ENDS} | {VERDICT: "1"}
     for name, image in images.items():
         image.attrs["units"] = unit_of[str(name)]
+    images[VERDICT].attrs["meanings"] = [verdict.value for verdict in Verdict]
     sides = {name: (name, side, {"units": "m"}) for name, side in (("x", x), ("y", y))}
     placed: xr.Dataset = images.assign_coords(sides)
     return placed
@@ -58,8 +62,9 @@ def _images(rows: Sequence[Row], places: Array, x: Array, y: Array) -> xr.Datase
 
 def _numbers(row: Row) -> dict[str, float]:
     """Return the numbers of a fit that have an image, by name."""
-    known, numbers = row.fit.values(), dict[str, float]()
-    for name, estimate in row.fit.estimates().items():
+    fit, numbers = row.fit, dict[str, float]()
+    known = fit.values()
+    for name, estimate in fit.estimates().items():
         if estimate.held or name in _OF_BASELINE:
             continue
         value, low, high = (known[f"{name}{end}"] for end in ENDS)
@@ -67,7 +72,8 @@ def _numbers(row: Row) -> dict[str, float]:
         if name == CONTACT_POINT:
             name, value, low, high = CONTACT_HEIGHT, -value, -high, -low
         numbers |= zip((f"{name}{end}" for end in ENDS), (value, low, high), strict=True)
-    return numbers | {name: known[name] for name in _QUALITY}
+    number = [*Verdict].index(fit.verdict) + 1.0
+    return numbers | {name: known[name] for name in _QUALITY} | {VERDICT: number}
 
 
 def _nearest(pixels: Array, values: Array) -> NDArray[np.intp]:

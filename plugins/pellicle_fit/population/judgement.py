@@ -145,7 +145,7 @@ def judge(rows: Sequence[Row], rules: Sequence[str], rejected: Names | None) -> 
     elif lost:
         curves = "curve was" if lost == 1 else "curves were"
         notes.append(f"{lost} fitted {curves} rejected; the table says why")
-    far = outliers(whole)
+    far = set(outliers(whole))
     for row in rows:
         row.outlier = row in far
     return notes

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
+import zlib
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -20,6 +23,10 @@ FITTED = "fitted"
 SHOWN = {"reduced_modulus": "E*", "tension": "τ₀", "work_of_adhesion": "W", "thickness": "h"}
 """Symbols of the quantities that tables and figures of curves show, if a curve has them."""
 _POINTS = 80
+_OF_ONE = {"explanations", "correlations", "excused", "target"}
+"""What only the kept file of a fit has: of many curves it would fill the memory."""
+_UNPACKED = 1024
+"""Records that are held as they are."""
 
 
 def sketch(**columns: ArrayLike) -> dict[str, Array]:
@@ -38,7 +45,12 @@ def as_json(drawn: dict[str, Array]) -> dict[str, list[float]]:
     return {name: [float(f"{v:.5g}") for v in values] for name, values in drawn.items()}
 
 
-@dataclass(eq=False)
+@lru_cache(_UNPACKED)
+def _unpacked(record: bytes) -> Record:
+    return Record(json.loads(zlib.decompress(record)) if record else {})
+
+
+@dataclass(eq=False, slots=True)
 class Row:
     """One curve of a population."""
 
@@ -49,28 +61,41 @@ class Row:
     site: Site | None = None
     failure: str = ""
     """Why there is no fit."""
-    fit: Record = field(default_factory=lambda: Record({}))
-    """The fit, with r_squared, indentation [m] and largest_force [N], or an empty record."""
+    kept: str = ""
+    """File in the folder of the fits that has all of its own fit."""
     sketch: dict[str, Array] = field(default_factory=dict)
     """Some of its rows, as `sketch` returns them."""
     accepted: bool = False
     reason: str = ""
     outlier: bool = False
+    _whole: Record | None = None
+    _packed: bytes = b""
 
     def keep(self, fit: dict[str, Any]) -> None:
         """Take the JSON data of a fit, which may hold a sketch, as workers return them."""
-        self.fit = Record({k: value for k, value in fit.items() if k != "sketch"})
+        self._whole = Record({k: value for k, value in fit.items() if k != "sketch"})
         self.sketch = sketch(**fit["sketch"]) if "sketch" in fit else {}
+
+    def pack(self) -> None:
+        """Keep in a kilobyte what tables, figures and pages show of the fit, and no more."""
+        if self._whole:
+            data = {k: value for k, value in self._whole.data.items() if k not in _OF_ONE}
+            self._packed, self._whole = zlib.compress(json.dumps(data).encode()), None
+
+    @property
+    def fit(self) -> Record:
+        """The fit, with r_squared, indentation [m] and largest_force [N], or an empty record."""
+        return self._whole or _unpacked(self._packed)
 
     @property
     def is_fitted(self) -> bool:
         """Whether there is a fit."""
-        return bool(self.fit)
+        return bool(self._whole or self._packed)
 
     @property
     def is_open(self) -> bool:
         """Whether there is neither a fit nor a failure."""
-        return not (self.fit or self.failure)
+        return not (self.is_fitted or self.failure)
 
     @property
     def status(self) -> str:
@@ -82,10 +107,13 @@ class Row:
         """Return the row of which `to_dict` returned the data, with its sketch if they hold one."""
         own = {name: data[name] for name in ("group", "failure", "accepted", "reason", "outlier")}
         row = cls(data["curve"], **own)
+        row.kept = data.get("kept", "")
         if site := data.get("site"):
             row.map, row.site = site["map"], Site(site["x"], site["y"])
         if not row.failure:
-            row.keep({k: v for k, v in data.items() if k not in {"curve", "site", "status", *own}})
+            other = {"curve", "site", "status", "kept", *own}
+            row.keep({k: v for k, v in data.items() if k not in other})
+            row.pack()
         row.sketch = sketch(**data["sketch"]) if data.get("sketch") else {}
         return row
 
@@ -95,6 +123,7 @@ class Row:
         row |= {"failure": self.failure, "group": self.group}
         if self.site is not None:
             row["site"] = {"map": self.map, **self.site._asdict()}
+        row |= {"kept": self.kept} if self.kept and self.is_fitted else {}
         judgement = {"accepted": self.accepted, "reason": self.reason, "outlier": self.outlier}
         return row | judgement | self.fit.data
 

@@ -28,11 +28,31 @@ _COLOURS = {"accepted": "0.6", "outlier": "C1", "rejected": "C3", "not fitted": 
 _DOTS: dict[str, Any] = {"color": "0.6", "mew": 0.35}
 
 
-def sheets(rows: Sequence[Row]) -> list[Callable[[Figure], None]]:
-    """Return functions that draw the pages of the contact sheet of all curves."""
+def sheets(rows: Sequence[Row], words: str = "") -> list[Callable[[Figure], None]]:
+    """Return functions that draw the pages of the contact sheet of curves, which words tell."""
     count = -(-len(rows) // (_ACROSS * _DOWN))
     pages = [rows[k * len(rows) // count : (k + 1) * len(rows) // count] for k in range(count)]
-    return [partial(_page, page, f"page {k} of {count}") for k, page in enumerate(pages, 1)]
+    return [partial(_page, page, f"page {k} of {count}{words}") for k, page in enumerate(pages, 1)]
+
+
+def chosen(rows: Sequence[Row], pages: int) -> tuple[Sequence[Row], str]:
+    """Return the curves that so many pages show, and which these are; of all no words.
+
+    Those that were not fitted, not accepted or stand out have half of the room.
+    """
+    room = pages * _ACROSS * _DOWN
+    if len(rows) <= room:
+        return rows, ""
+    odd = [i for i, row in enumerate(rows) if row.outlier or not row.accepted]
+    rest = [i for i, row in enumerate(rows) if row.accepted and not row.outlier]
+    first = min(len(odd), max(room // 2, room - len(rest)))
+    some = sorted([*_evenly(odd, first), *_evenly(rest, room - first)])
+    words = f"; {room} of {len(rows)} curves: {first} of {len(odd)} that are not accepted or stand "
+    return [rows[i] for i in some], f"{words}out, {room - first} of the others"
+
+
+def _evenly(numbers: Sequence[int], count: int) -> list[int]:
+    return [numbers[k * len(numbers) // count] for k in range(count)]
 
 
 def grid(count: int) -> tuple[int, int]:
@@ -54,7 +74,7 @@ def _page(rows: Sequence[Row], caption: str, figure: Figure) -> None:
         _curve(row, axes, _ACROSS / across)
     for axes in cells[len(rows) :]:
         axes.set_axis_off()
-    colours = "accepted: grey, stands out: orange, rejected: red, not fitted: black"
+    colours = "accepted: grey, stands out: orange, rejected: purple, not fitted: black"
     title = f"{caption}; data: points, hollow if not accepted; fit: line; frames of the range of "
     figure.suptitle(f"{title}each curve, {colours}", fontsize=5)
 

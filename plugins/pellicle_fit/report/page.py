@@ -12,7 +12,7 @@ from pellicle.components import Column, Table
 from pellicle.files import atomic_write
 from pellicle.show import Block, Code, Notice, Picture, Section, Text
 from pellicle_fit.config import FitConfig
-from pellicle_fit.population.fits import ManyFits, summary
+from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.record import Record
 from pellicle_fit.result import Fit
 from pellicle_fit.selection.verdict import Verdict
@@ -24,6 +24,8 @@ from .figures import charts, panels
 
 _WIDE = 8.0
 """Width of figures from which on they have that of the page [inch]."""
+_LINES = 30
+"""Most lines of a notice."""
 _ELSEWHERE = {
     *("curves", "per_file", "rivals", "pool"),
     *("executor", "cache", "grid_points"),
@@ -93,25 +95,37 @@ def _one(fit: Record) -> list[Block]:
 def _many(fits: ManyFits) -> list[Block]:
     rows = fits.rows
     failed = [(row.status, row.name) for row in rows if not row.is_fitted]
-    notes = [(text, row.name) for row in rows for text in row.fit.notes]
-    warnings = [(text, row.name) for row in rows for text in row.fit.warnings]
+    notes, warnings = list[tuple[str, str]](), list[tuple[str, str]]()
+    for row in rows:
+        fit = row.fit
+        notes += [(text, row.name) for text in fit.notes]
+        warnings += [(text, row.name) for text in fit.warnings]
     blocks: list[Block] = [Text(line, lead=True) for line in sentences_of_population(rows)]
     if failed:
         lost = f"{len(failed)} of {len(rows)} curves could not be fitted:"
-        blocks.append(Notice(lost, good=False, details=by_text(failed)))
+        blocks += _listed(lost, by_text(failed), good=False)
     if fits.notes:
         blocks.append(Notice("Population:", good=None, details=fits.notes))
     blocks += [*map(Text, advice_of_population(rows)), tables.rows(rows)]
-    if summary(rows):
-        blocks.append(tables.groups(rows))
+    if (groups := tables.groups(rows)).columns:
+        blocks.append(groups)
     return [*blocks, *_told(by_text(warnings), by_text(notes))]
 
 
 def _told(warnings: Sequence[str], notes: Sequence[str]) -> Iterator[Block]:
     if warnings:
-        yield Notice("Warnings:", good=None, details=warnings)
+        yield from _listed("Warnings:", warnings)
     if notes:
         yield Table([Column("note", notes)], "Notes.", folded=True)
+
+
+def _listed(text: str, lines: Sequence[str], good: bool | None = None) -> Iterator[Block]:
+    """Yield a notice with its lines, or in front of a folded table if they are many."""
+    if len(lines) <= _LINES:
+        yield Notice(text, good, details=lines)
+    else:
+        yield Notice(f"{text} see the table below.", good)
+        yield Table([Column("curves and reason", lines)], f"{text[:-1]}.", folded=True)
 
 
 def _sentence(text: str) -> str:

@@ -12,6 +12,7 @@ from pellicle.units import Scale
 from pellicle_fit.population.row import Row
 from pellicle_fit.words.names import FEW, value_and_ends
 
+_BLOCK = 1000
 _KILOPASCAL, _MILLINEWTON = Scale(1e-3, "kPa"), Scale(1e3, "mN/m")
 
 
@@ -37,7 +38,7 @@ def save_tables(rows: Sequence[Row], stem: Path) -> list[Path]:
     frame = pd.DataFrame(lines)
     cells = [[*frame], ["---"] * frame.shape[1], *frame.to_numpy().tolist()]
     marked = (" | ".join(cell.replace("|", "\\|") for cell in line) for line in cells)
-    latex = frame.to_latex(index=False, escape=True, column_format="llrlrlr")
+    latex = _latex(frame)
     texts = {
         ".csv": frame.to_csv(index=False, lineterminator="\n"),
         ".md": "".join(f"| {line} |\n" for line in marked),
@@ -48,3 +49,15 @@ def save_tables(rows: Sequence[Row], stem: Path) -> list[Path]:
         with atomic_write(stem.with_suffix(ending)) as part:
             part.write_bytes(text.encode())
     return [stem.with_suffix(ending) for ending in texts]
+
+
+def _latex(frame: pd.DataFrame) -> str:
+    """Return a table as LaTeX, some lines of it at a time, as pandas takes 7 kB for each."""
+    head, middle, end, bodies = "", "\\midrule\n", "\\bottomrule\n", []
+    for first in range(0, max(len(frame), 1), _BLOCK):
+        part = frame[first : first + _BLOCK]
+        text = part.to_latex(index=False, escape=True, column_format="llrlrlr")
+        head, _, body = text.partition(middle)
+        body, _, tail = body.partition(end)
+        bodies.append(body)
+    return "".join([head, middle, *bodies, end, tail])

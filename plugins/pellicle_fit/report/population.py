@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pellicle.arrays import Array, Dataset, Mask
+from pellicle.arrays import Array, DataArray, Dataset, Mask
 from pellicle.components import Axis, Chart, Look, Series
 from pellicle.files import atomic_write
 from pellicle.results import header
@@ -16,12 +16,12 @@ from pellicle.show import figure_of, save_figure, save_pages
 from pellicle.units import axis_unit
 from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.population.fits import ManyFits, common_error, label
-from pellicle_fit.population.images import CONTACT_HEIGHT
+from pellicle_fit.population.images import CONTACT_HEIGHT, VERDICT
 from pellicle_fit.population.row import SHOWN, Row, counted
 from pellicle_fit.selection.recipe import TENSION
 from pellicle_fit.words.names import words
 
-from .contact_sheet import PAGE, sheets
+from .contact_sheet import PAGE, chosen, sheets
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,6 +55,8 @@ def bars(rows: Sequence[Row]) -> list[Chart]:
     curves are hollow.
     """
     series, axes = list[Series](), list[Axis]()
+    if len(rows) > _BARS:
+        return []
     for name, unit in _DRAWN.items():
         fitted = [
             (number, row.accepted, e.value, e.low, e.high)
@@ -75,7 +77,7 @@ def bars(rows: Sequence[Row]) -> list[Chart]:
                 series.append(Series(x[which], y[which], look=look, panel=panel))
         axes.append(Axis(words(name), unit, limits=(0, None)))
     across = Axis("curve, in the order of the table")
-    return [Chart(across, axes, series)] if axes and len(rows) <= _BARS else []
+    return [Chart(across, axes, series)] if axes else []
 
 
 def distributions(rows: Sequence[Row]) -> list[Chart]:
@@ -90,7 +92,8 @@ def distributions(rows: Sequence[Row]) -> list[Chart]:
             kinds = np.array([groups.index(label(row.group)) for row in found])
             # One legend is enough.
             legends = groups if len(groups) > 1 and not charts else [""] * len(groups)
-            error, axis = common_error(found, name), Axis(words(name), unit, log=is_wide)
+            error = common_error(row.fit.common_errors(name) for row in found)
+            axis = Axis(words(name), unit, log=is_wide)
             charts.append(_histogram(axis, values, kinds, legends, *error.values()))
     return charts
 
@@ -125,7 +128,8 @@ def _histogram(
 def map_figure(images: Dataset, title: str) -> tuple[Callable[[Figure], None], tuple[float, float]]:
     """Return what draws each parameter beside the width of its interval, and its size [inch].
 
-    It is grey where there is no value, and hatched where one end of its interval is open.
+    It is grey where there is no value, and hatched where one end of its interval is open. Verdicts
+    have a legend.
     """
     names = [name for name in (*SHOWN, CONTACT_HEIGHT) if name in images]
     across, along = _pitches(images)
@@ -134,7 +138,7 @@ def map_figure(images: Dataset, title: str) -> tuple[Callable[[Figure], None], t
 
     def draw(figure: Figure) -> None:
         figure.suptitle(title, fontsize="medium")
-        panels: Any = figure.subplots(len(names), 2, squeeze=False)
+        *panels, last = figure.subplots(len(names) + 1, 2, squeeze=False)
         for name, pair in zip(names, panels, strict=True):
             width = images[f"{name}_high"] - images[f"{name}_low"]
             heads = {name.replace("_", " "): images[name], "width of its 95 % interval": width}
@@ -150,10 +154,29 @@ def map_figure(images: Dataset, title: str) -> tuple[Callable[[Figure], None], t
                 # Pixels of a line of curves have no height.
                 axes.set(facecolor="0.8", aspect="equal" if min(image.shape) > 1 else "auto")
                 axes.set_title(head, fontsize="medium")
+        _verdicts(images[VERDICT].assign_coords(sides), *last)
 
     ratio = np.clip(images["y"].size * along / (images["x"].size * across), 0.2, 3.0)
     height = (_WIDTH - 1.3) * float(ratio) + _AROUND
-    return draw, (2 * _WIDTH, height * len(names) + 0.4)
+    return draw, (2 * _WIDTH, height * (len(names) + 1) + 0.4)
+
+
+def _verdicts(image: DataArray, axes: Axes, beside: Axes) -> None:
+    """Draw the map of verdicts, and beside it its legend with the number of curves of each."""
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    meanings = image.attrs["meanings"]
+    colours = [f"C{number}" for number in range(len(meanings))]
+    counts = np.bincount(image.values[image.values > 0].astype(int))
+    ends: dict[str, Any] = {"vmin": 0.5, "vmax": len(meanings) + 0.5}
+    image.plot.imshow(ax=axes, cmap=ListedColormap(colours), add_colorbar=False, **ends)
+    axes.set(facecolor="0.8", aspect="equal" if min(image.shape) > 1 else "auto")
+    axes.set_title("verdict", fontsize="medium")
+    kinds = zip(colours, meanings, counts[1:], strict=False)
+    of = [Patch(color=colour, label=f"{text} ({n})") for colour, text, n in kinds if n]
+    beside.legend(handles=of, loc="center left", fontsize="small")
+    beside.set_axis_off()
 
 
 def _hatch(axes: Axes, pixels: Mask) -> None:
@@ -182,11 +205,17 @@ def _pitches(images: Dataset) -> tuple[float, float]:
     return x or y, y or x
 
 
-def save_population(fits: ManyFits, directory: Path, formats: Sequence[str]) -> tuple[Path, ...]:
-    """Write contact sheet, distributions and the images in ``maps``, and return the files."""
+def save_population(
+    fits: ManyFits, directory: Path, formats: Sequence[str], pages: int | None = None
+) -> tuple[Path, ...]:
+    """Write contact sheet, distributions and the images in ``maps``, and return the files.
+
+    The sheet has at most so many ``pages``, or all curves.
+    """
     from PIL import Image
 
-    files = [save_pages(sheets(fits.rows), directory / "fits-curves.pdf", PAGE)]
+    rows, words = (fits.rows, "") if pages is None else chosen(fits.rows, pages)
+    files = [save_pages(sheets(rows, words), directory / "fits-curves.pdf", PAGE)]
     if charts := distributions(fits.rows):
         draw, size = figure_of(charts)
         files += save_figure(draw, directory / "fits", formats, size)

@@ -156,13 +156,18 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
         else "modulus stands out" * row.outlier or (FITTED if row.is_fitted else "failed")
         for row in of
     ]
-    radii = [row.fit.curve.get("indenter", {}).get("radius", "") for row in of]
-    has_youngs = any("youngs_modulus" in row.fit.estimates() for row in of)
+    # A row is unpacked once.
+    known = [
+        (fit.headline, fit.curve.get("indenter", {}).get("radius", ""), fit.estimates())
+        for fit in (row.fit for row in of)
+    ]
+    verdicts, radii, found = zip(*known, strict=True) if known else ((), (), ())
+    has_youngs = any("youngs_modulus" in one for one in found)
     columns = list[Column]()
     for name in ("youngs_modulus", *[*SHOWN][1:]) if has_youngs else SHOWN:
-        all_of = [row.fit.estimates().get(name) for row in of]
+        all_of = [one.get(name) for one in found]
         if name in OVER_TIED or 2 * sum(map(bool, all_of)) >= len(of):
-            columns += _quantity(name, _usual(of, name, si), all_of, _SI_DIGITS if si else FEW)
+            columns += _quantity(name, _usual(all_of, si), all_of, _SI_DIGITS if si else FEW)
     others = [
         Column("group", [row.group for row in of]),
         Column("radius", radii, "m"),
@@ -170,33 +175,31 @@ def rows(of: Sequence[Row], *, si: bool = False) -> Table:
     ]
     fitted = [n for n, row in enumerate(of) if row.is_fitted]
     columns += [c for c in others if any(c.bad) or len({str(c.values[n]) for n in fitted}) > 1]
-    first = [
-        Column("curve", [row.name for row in of]),
-        Column("verdict", [r.fit.headline for r in of]),
-    ]
+    first = [Column("curve", [row.name for row in of]), Column("verdict", verdicts)]
     caption = "Each curve on its own, with its 95 % intervals."
     return Table([*first, *columns], caption, folded=len(of) > _MANY)
 
 
 def groups(of: Sequence[Row], *, si: bool = False) -> Table:
-    """Return a row for each parameter of each group of curves."""
-    parts, cells = summary(of), []
+    """Return a row for each parameter of each group of curves; no columns without any."""
+    parts, cells, units = summary(of), [], dict[str, Scale]()
     heads = ["group", "parameter", "accepted", "open", "outliers", "median", "quartiles"]
     if has_error := any("common_error" in part for part in parts):
         heads.append("common error")
     for part in parts:
-        unit = _usual(of, part["parameter"], si)
+        name = part["parameter"]
+        if (unit := units.get(name)) is None:
+            unit = units[name] = _usual([row.fit.estimates().get(name) for row in of], si)
         low, median, high = (unit.number(part[name]) for name in QUARTILES[1:4])
         counts = f"{part['n']} of {part['curves']}", str(part["open"]), str(part["outliers"])
-        named = part["group"], f"{words(part['parameter'])} [{unit.unit}]"
+        named = part["group"], f"{words(name)} [{unit.unit}]"
         error = f"± {unit.number(e, FEW)}" if (e := part.get("common_error")) else ""
         ends = median, f"{low} to {high}"
         if part["no_sign"] == part["n"]:
             ends = "no sign", ""
         cells.append((*named, *counts, *ends, *([error] if has_error else [])))
-    return Table.of_rows(
-        heads, cells, "All accepted curves; open, those whose interval is open or wide."
-    )
+    caption = "All accepted curves; open, those whose interval is open or wide."
+    return Table.of_rows(heads, cells, caption) if cells else Table([])
 
 
 def _unit(fit: Record, name: str, si: bool) -> Scale:
@@ -208,9 +211,9 @@ def _unit(fit: Record, name: str, si: bool) -> Scale:
     return unit_of([e["value"] for e in others if e is not None], own.unit, si=si)
 
 
-def _usual(of: Sequence[Row], name: str, si: bool) -> Scale:
+def _usual(of: Sequence[Estimate | None], si: bool) -> Scale:
     """Return the unit of a quantity in all tables of curves: that of the median upper end."""
-    found = [e for row in of if (e := row.fit.estimates().get(name)) is not None]
+    found = [e for e in of if e is not None]
     values = [size for e in found if (size := e.high or np.nan_to_num(e.value))] or [0.0]
     return unit_of([float(np.median(values))], found[0].unit if found else "", si=si)
 

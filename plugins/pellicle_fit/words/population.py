@@ -25,20 +25,25 @@ def sentences_of_population(rows: Sequence[Row]) -> list[str]:
     counts = f"{fitted} of {len(rows)} curves were fitted"
     if accepted != fitted:
         counts += f", {accepted} of them accepted"
-    verdicts = Counter(row.fit.verdict.value for row in rows if row.is_fitted).most_common()
+    verdicts, spared, needed, calibrations = Counter[str](), 0, False, dict[str, None]()
+    for fit in (row.fit for row in rows if row.is_fitted):
+        verdicts[fit.verdict.value] += 1
+        spared += bool(fit.data.get("not_weighed"))
+        needed = needed or bool(fit.data.get("tension_needed"))
+        calibrations[fit.data["calibration"]] = None
     if verdicts:
-        counts += f"; verdicts: {', '.join(f'{verdict} in {count}' for verdict, count in verdicts)}"
+        of = ", ".join(f"{verdict} in {count}" for verdict, count in verdicts.most_common())
+        counts += f"; verdicts: {of}"
     sentences = [counts]
     if far := [row.name for row in rows if row.outlier]:
         sentences.append(f"far from the median modulus, and counted: {listed(far, most=_NAMES)}")
-    if spared := sum(bool(row.fit.data.get("not_weighed")) for row in rows):
+    if spared:
         sentences.append(
             f"in {spared} of them what curves beside them rule out by {RULED_OUT:.0f} in AIC was "
             "not compared; --every-rival compares it"
         )
-    if any(row.fit.data.get("tension_needed") for row in rows):
+    if needed:
         sentences.append(NOT_WEIGHED)
-    calibrations = {row.fit.data["calibration"] for row in rows if row.is_fitted}
     level = f"intervals of {100 * CONFIDENCE:.0f} %"
     return [*sentences, *(f"{level}; {text}" for text in calibrations)]
 

@@ -168,6 +168,21 @@ def test_open_intervals_have_no_pixel() -> None:
     assert only_image(rows)[0] == [[-1, 1]]
 
 
+def test_map_of_verdicts() -> None:
+    """Each verdict has a number, which is in its legend with how many curves have it."""
+    rows = placed([(0, 0), (1, 0), (0, 1), (1, 1)])
+    rows[0].fit.data["verdict"] = "needed"
+    rows[3].accepted = False
+    (images,) = force_maps(rows)[0].values()
+    np.testing.assert_array_equal(images["verdict"], [[1, 3], [3, np.nan]])
+    assert images["verdict"].attrs["meanings"][0] == "needed"
+    fill, size = map_figure(images, "map")
+    figure = Figure(size)
+    fill(figure)
+    (legend,) = filter(None, (axes.get_legend() for axes in figure.axes))
+    assert [text.get_text() for text in legend.get_texts()] == ["needed (1)", "no sign (2)"]
+
+
 def test_odd_grids() -> None:
     """Noise of the stage, a missing column and a map that is not square change no pixel."""
     noise = 0.05 * np.random.default_rng(1).standard_normal((6, 2))

@@ -132,6 +132,9 @@ def test_a_kept_fit_that_was_changed(
     (path,) = (tmp_path / "curves").glob("*.json")
     kept = path.read_bytes()
     assert json.loads(kept)["reduced_modulus"] == first.rows[0].fit.data["reduced_modulus"]
+    assert json.loads(kept)["explanations"]
+    assert "explanations" not in first.rows[0].fit.data
+    assert first.rows[0].to_dict()["kept"] == f"curves/{path.name}"
     path.write_bytes(damage if isinstance(damage, bytes) else kept.replace(*damage))
     assert path.read_bytes() != kept
     again = fits()

@@ -11,6 +11,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 from click.testing import Result
@@ -41,6 +42,7 @@ from pellicle_fit.population.row import Row
 from pellicle_fit.report import tables
 from pellicle_fit.report.contact_sheet import sheets
 from pellicle_fit.report.population import distributions
+from pellicle_fit.sealed import read_sealed, write_sealed
 from pellicle_fit.words.names import quoted, unit_of
 from pellicle_fit.words.population import sentences_of_population
 from tests.plugins.fit.test_many import BEAD, HERTZ, OPTIONS, curve, save
@@ -254,6 +256,43 @@ def test_nothing_is_left() -> None:
     assert summary(rows) == []
     assert len(sheets(rows)) == 1
     assert len(sheets(rows * 30)) == 3
+
+
+def test_rows_of_many_curves_are_slim(tmp_path: Path) -> None:
+    """Tables and figures lose nothing; what was compared stays in the file that a row names."""
+    one = row("a", tension=estimate(1e-3, "N/m"))
+    of_all = {"explanations": [{"words": f"effect {n}"} for n in range(1000)], "excused": []}
+    one.keep(one.fit.data | of_all)
+    one.kept = "curves/a.json"
+    whole = one.fit
+    one.pack()
+    assert len(one._packed) < 1000
+    assert one.fit.values() == whole.values()
+    assert one.fit.data == {k: v for k, v in whole.data.items() if k not in of_all}
+    path = write_sealed({"notes": ["{"]}, tmp_path / "fits.json", [one.to_dict()] * 3)
+    assert len(json.loads(path.read_bytes())["curves"]) == 3
+    assert path.read_text(encoding="ascii").count('\n{"curve": "a"') == 3
+    again = read_sealed(path, Row.of_dict)
+    assert [again.pop("notes"), *(one.to_dict() for one in again["curves"])] == [
+        ["{"],
+        *[one.to_dict()] * 3,
+    ]
+    path.write_bytes(path.read_bytes().replace(b'"a"', b'"b"', 1))
+    with pytest.raises(StorageError, match="was changed since pellicle wrote it"):
+        read_sealed(path, Row.of_dict)
+
+
+def test_sources_know_how_many_there_are(tmp_path: Path) -> None:
+    """Files that were not opened yet count as one curve each, so that the time left is told."""
+    with h5py.File(tmp_path / "b.h5", "w") as file:
+        for label in "xy":
+            for name, values in zip(("position", "force"), curve(1), strict=True):
+                file[f"{label}/{name}"] = values
+                file[f"{label}/{name}"].attrs["units"] = "m" if name == "position" else "N"
+    for name in "ac":
+        save(tmp_path / f"{name}.csv", *curve(1))
+    config = pl.FitConfig.merged(**BEAD, curves=[tmp_path])
+    assert [source.total for source in config.sources()] == [3, 4, 4, 4]
 
 
 @pytest.mark.slow

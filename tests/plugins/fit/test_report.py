@@ -14,10 +14,11 @@ import numpy as np
 import pytest
 
 import pellicle as pl
+from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.population.judgement import judge
 from pellicle_fit.record import Record
 from pellicle_fit.report import tables
-from pellicle_fit.report.contact_sheet import grid, sheets
+from pellicle_fit.report.contact_sheet import chosen, grid, sheets
 from pellicle_fit.report.figures import charts, panels, save_figure
 from pellicle_fit.report.likelihood_map import likelihood_map
 from pellicle_fit.report.page import save_report
@@ -127,6 +128,35 @@ def test_pages_are_filled() -> None:
         assert 0.75 * down * across <= count <= down * across
     assert (grid(1), grid(2), grid(28)) == ((1, 1), (2, 1), (7, 4))
     assert [len(sheets([row("a")] * count)) for count in (28, 29, 57)] == [1, 2, 3]
+
+
+def test_sheet_of_very_many_curves() -> None:
+    """It shows some, those that are not accepted in half of the room, and says so."""
+    rows = [row(str(n)) for n in range(300)]
+    for number, one in enumerate(rows):
+        one.accepted = number % 4 > 0
+    assert chosen(rows, 11) == (rows, "")
+    some, words = chosen(rows, 2)
+    assert [int(one.name) for one in some] == sorted({int(one.name) for one in some})
+    assert sum(not one.accepted for one in some) == len(some) / 2 == 28
+    assert words.startswith("; 56 of 300 curves: 28 of 75 that are not accepted")
+    few, _ = chosen(rows[:160:4] + rows[1:101:4], 2)
+    assert sum(one.accepted for one in few) == 25
+    (caption, *_) = (text for text in panels(ManyFits(rows)) if "page 1 of 6" in text)
+    assert caption.startswith("Some curves with their fits, page 1 of 6; 168 of 300 curves")
+
+
+def test_long_lists_of_curves_are_shown_on_demand(tmp_path: Path) -> None:
+    """A page begins with what was found, not with hundreds of reasons."""
+    for count in (30, 31):
+        rows = [row("a"), *(row(f"b{n}", None) for n in range(count))]
+        for number, one in enumerate(rows[1:]):
+            one.failure = f"no contact: {number} nN"
+        page = save_report(ManyFits(rows), tmp_path / "fits.html", "fits").read_text("utf-8")
+        assert f"<p>{count} of {count + 1} curves could not be fitted:" in page
+        assert f"b{count - 1}: failed: no contact: {count - 1} nN" in page
+        folded = f"<summary>{count} of {count + 1} curves could not be fitted.</summary>"
+        assert (folded in page) == (count == 31)
 
 
 def test_long_tables_of_curves_are_shown_on_demand() -> None:
