@@ -148,26 +148,6 @@ def test_no_tension_one_way_is_allowed() -> None:
     assert data["depth"] < step(skin(0.0))["depth"]
 
 
-@pytest.mark.parametrize(
-    ("fields", "field", "words"),
-    [
-        ({"tension": [0.1, -0.1]}, "tension", "≥ 0"),
-        ({"tension": [0.1, 0.1, 0.1]}, "tension", "give one value, or a list of two"),
-        ({"tension": [0.1]}, "tension", "a list of two"),
-        ({"tension": ["1 N/m", "2 Pa"]}, "tension", "Pa"),
-        ({"tension": 0.1, "angle": 0.5}, "angle", "same in all directions"),
-        ({"tension": [0.1, 0.1], "angle": 0.5}, "angle", "same in all directions"),
-        ({"tension": [0.1, 0.2], "angle": "1 m"}, "angle", "rad"),
-    ],
-)
-@pytest.mark.parametrize("make", [skin, coated])
-def test_bad_tensions_are_refused(make: Any, fields: Any, field: str, words: str) -> None:
-    """In words that name the field."""
-    with pytest.raises(pl.ConfigError, match=words) as caught:
-        make(**fields)
-    assert caught.value.problems[0].field == field
-
-
 def test_a_free_boundary_a_solid_that_relaxes_and_a_fit_are_refused() -> None:
     """Each before anything is solved."""
     with pytest.raises(pl.ConfigError, match="yields equally in all directions"):
