@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -301,6 +302,52 @@ def test_a_first_jump_of_a_solid_that_relaxes() -> None:
         )
     with pytest.raises(pl.ConfigError, match="first step that is a jump"):
         pl.Run(**run | {"loading": {"depth": [8e-6] * 2, "time": [0, 1]}, "gradient": paths})
+
+
+SEEDED = {"indenter": INDENTERS[2]}
+
+
+@cache
+def never() -> Any:
+    """Return a solver that must not be reached."""
+
+    class Never(pl.Solver):
+        """No solver."""
+
+        type: Literal["never"] = "never"
+
+        def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
+            """Fail."""
+            raise AssertionError("solved")
+
+    return Never()
+
+
+@pytest.mark.parametrize(
+    ("change", "path", "words"),
+    [
+        ({"indenter": {"type": "flat_punch", "radius": 1e-4}}, "indenter.radius", "flat end"),
+        (SEEDED, "indenter.cutoff_wavelength", "in steps"),
+        (
+            SEEDED
+            | {
+                "grid": {"points": 24, "size": 4e-4, "boundary": "periodic"},
+                "loading": {"mean_plane_depth": [-1e-6]},
+            },
+            "heights",
+            "depends on the heights",
+        ),
+    ],
+)
+def test_what_turns_out_to_have_none_is_refused(
+    change: dict[str, Any], path: str, words: str
+) -> None:
+    """Before anything is solved."""
+    run = configuration(KERNELS["half-space"], "free", INDENTERS[0], LOADINGS[0])
+    run = run | change | {"solver": never(), "gradient": [path]}
+    with pytest.raises(pl.ConfigError, match=words) as caught:
+        pl.run(pl.Run(**run), progress=False)
+    assert "gradient" in caught.value.problems[0].field
 
 
 def test_a_file_a_study_and_what_is_resumed(tmp_path: Path) -> None:

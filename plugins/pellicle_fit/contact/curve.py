@@ -166,10 +166,10 @@ class Curve:
         They are even in rows and, where force and position say that it touches, in the position: a
         long path may touch in its last hundredth.
         """
-        found = []
+        groups = []
         for rows in self.passes:
             if rows.size <= bins:
-                found += [*rows[:, None]]
+                groups += [*rows[:, None]]
                 continue
             inward = rows[::-1] if self.moves_out[rows[0]] else rows
             force, way = self.smoothed[inward], np.maximum.accumulate(self.position[inward])
@@ -177,10 +177,10 @@ class Curve:
             near = np.maximum(way - way[-1] + _WAYS * (way[-1] - clear), 0.0)
             along = np.arange(rows.size) / rows.size + near / (near[-1] or 1.0)
             ends = np.unique(np.searchsorted(along, np.arange(1, bins) * (2 / bins)))
-            found += sorted(
+            groups += sorted(
                 (np.sort(part) for part in np.split(inward, ends) if part.size), key=min
             )
-        return found
+        return groups
 
     def binned(self, bins: int) -> Curve:
         """Return means of neighbouring rows, at most ``bins`` for each pass.

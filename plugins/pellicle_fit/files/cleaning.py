@@ -64,13 +64,13 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     _check_rise(base, f)
     if t is None and curve.speed is not None:
         t = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(base)))]) / curve.speed
-    found = passes(base, pause)
-    first, last, unloading = rows_of(base, found, segment)
+    segments = passes(base, pause)
+    first, last, unloading = rows_of(base, segments, segment)
     rows = np.arange(first, last + 1)
     if pause is not None and segment != "both":
         rows = rows[~pause[rows]]
-    elif pause is not None and len(found) > 1:
-        unloading = found[1].first
+    elif pause is not None and len(segments) > 1:
+        unloading = segments[1].first
     if left := z.size - rows.size:
         which = "both passes" if segment == "both" else f"the {segment}"
         of = f"rows {_spans(number, rows)} are {which}"
@@ -81,8 +81,8 @@ def clean(curve: Measurement, segment: Segment = "approach") -> Measurement:
     if segment != "both" and back > _MODULATED * np.ptp(base):
         text = f"the position moves back by up to {readable(back, 'm', 2)} within the {segment}"
         messages.append(Note(f"{text}, which is fitted as one pass"))
-    is_later = segment == "approach" and found[-1].first >= last
-    later = number[found[-1].first : found[-1].last + 1]
+    is_later = segment == "approach" and segments[-1].first >= last
+    later = number[segments[-1].first : segments[-1].last + 1]
     if segment == "retract":
         messages.append("a retract is fitted as if nothing adhered: compare with the approach")
     _check_count(rows.size, "it" if segment == "both" else f"its {segment}")

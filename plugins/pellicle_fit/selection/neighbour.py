@@ -32,14 +32,18 @@ class Neighbour(NamedTuple):
     @classmethod
     def of_dict(cls, fit: Mapping[str, Any]) -> Neighbour:
         """Return the neighbour that the JSON data of a fit of one curve describe."""
-        explanations = {frozenset(one["effects"]): one for one in fit["explanations"]}
+        explanations = {
+            frozenset(explanation["effects"]): explanation for explanation in fit["explanations"]
+        }
         return cls(
             fit["verdict"] != Verdict.UNDESCRIBED.value,
-            frozenset(types for types, one in explanations.items() if one["tied"]),
-            frozenset(t for t, one in explanations.items() if one["delta_aic"] > RULED_OUT),
+            frozenset(types for types, explanation in explanations.items() if explanation["tied"]),
+            frozenset(
+                t for t, explanation in explanations.items() if explanation["delta_aic"] > RULED_OUT
+            ),
             {
-                types: {name: e["value"] for name, e in one["parameters"].items()}
-                for types, one in explanations.items()
+                types: {name: e["value"] for name, e in explanation["parameters"].items()}
+                for types, explanation in explanations.items()
             },
         )
 
@@ -67,4 +71,4 @@ class Neighbour(NamedTuple):
         if not np.isfinite(at).all():
             return []
         others = (objective.at_values(of.objective.values(of.minimum.at)) for of in parts)
-        return [at, *(np.where(np.isnan(other), at, other) for other in others)]
+        return [at, *(np.where(np.isnan(coordinates), at, coordinates) for coordinates in others)]

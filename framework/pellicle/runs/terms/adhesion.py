@@ -150,9 +150,9 @@ def _asperity_jumped(before: State | None, equilibrium: AdhesiveEquilibrium) -> 
     if before is None or not problem.law.needs_contact:
         return False
     patches = before.pressure != 0, equilibrium.pressure != 0
-    for mask, other in (patches, patches[::-1]):
+    for mask, counterpart in (patches, patches[::-1]):
         labels, number = labelled(mask, problem.grid.boundary, 4)
-        if np.unique(labels[mask & other]).size < number:
+        if np.unique(labels[mask & counterpart]).size < number:
             return True
     return False
 
