@@ -18,8 +18,8 @@ from pellicle_fit.config import DEFAULT_RIVALS
 from pellicle_fit.estimation.candidate import Candidate
 from pellicle_fit.estimation.intervals import End, Estimate, common_value
 from pellicle_fit.estimation.noise import Flaw
-from pellicle_fit.selection.forecast import _foretold as foretold
 from pellicle_fit.selection.forecast import Means, measurements, telling
+from pellicle_fit.selection.forecast import _foretold as foretold
 from pellicle_fit.selection.verdict import Verdict, decision
 from pellicle_plugins.indenters.of_revolution import Cone, FlatPunch, Paraboloid, Sphere
 from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array
