@@ -62,14 +62,14 @@ class FitProblem:
         """
         config, named = self.config, [*zip(self.names, self.measured, strict=True)]
         with status_line("fitting", progress):
-            answer_of_curves = answer(list(self.curves), **self.arguments, like=like)
+            result = answer(list(self.curves), **self.arguments, like=like)
             left_out = next(
                 (rows for measurement in self.measured if (rows := measurement.left_out)), None
             )
-            advice = advise(answer_of_curves, left_out, config)
-        data = data_of_fit(answer_of_curves, named, advice, self.poissons_ratio, config)
+            advice = advise(result, left_out, config)
+        data = data_of_fit(result, named, advice, self.poissons_ratio, config)
         record = record_of(config, [curve["data"] for curve in data["curves"]], self.began)
-        return Fit(data | record, answer_of_curves, config)
+        return Fit(data | record, result, config)
 
 
 def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = False) -> FitProblem:

@@ -106,9 +106,7 @@ class Registry:
         """Return the version of pellicle, of the owners of components, and of libraries."""
         numbers = {name: _version(name) for name in ("pellicle", "numpy", "scipy")}
         numbers |= self.versions(used)
-        for name in sorted(
-            {*others, *(name for component in used for name in component.libraries)}
-        ):
+        for name in sorted({*others, *(name for kind in used for name in kind.libraries)}):
             # A worker may receive data that a library has read without having the library itself.
             with suppress(PackageNotFoundError):
                 numbers[name] = _version(name)

@@ -214,12 +214,10 @@ def _weight(x: Array, g: Array, f: Array, power: float, reach: Array) -> float:
     value at r scales with the largest g at q > 1/r.
     """
     nonzero, inside = f != 0, (x > -reach[1]) & (x < -reach[0])
-    envelope = np.log(np.maximum.accumulate(g[::-1])[::-1][inside])
+    log_g = np.log(np.maximum.accumulate(g[::-1])[::-1][inside])
     part = np.log(np.abs(f[nonzero]))
 
     def decades(b: float) -> float:
-        return float(
-            (b * x[nonzero] + part).max(initial=-np.inf) - (b * x[inside] + envelope).min()
-        )
+        return float((b * x[nonzero] + part).max(initial=-np.inf) - (b * x[inside] + log_g).min())
 
     return min((power + share * (2 - power) for share in (0.25, 0.5, 0.75)), key=decades)

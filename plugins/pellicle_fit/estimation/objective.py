@@ -97,7 +97,7 @@ class Objective(Coordinates):
 
     def derivatives(self, at: Array, trials: Trials) -> Array:
         """Return the derivatives of the terms of trials, of shape (k, coordinates, terms)."""
-        rates_of_terms = np.zeros((*at.shape, trials.terms.shape[1]))
+        slopes = np.zeros((*at.shape, trials.terms.shape[1]))
         steps = np.where(at + _STEP <= self.limits[1], _STEP, -_STEP)
         end = 0
         for i, (curve, balance) in enumerate(zip(self.curves, trials.balances, strict=True)):
@@ -114,17 +114,17 @@ class Objective(Coordinates):
                 else:
                     forces = known.beside(curve, near, together=self.takes_columns)
                 rates = self._term((forces - near.recorded) / step[:, None], i)
-                rates_of_terms[:, some, begin:end] = rates.reshape(len(at), len(some), -1)
+                slopes[:, some, begin:end] = rates.reshape(len(at), len(some), -1)
             if touches:
                 shift = _STEP * self.slots[touches[0]].scale
                 forces = self.known(at, i).recorded(balance.force - shift * balance.rate, curve)
-                rates_of_terms[:, touches[0], begin:end] = self._term(
+                slopes[:, touches[0], begin:end] = self._term(
                     (forces - balance.recorded) / _STEP, i
                 )
         for number, (k, slot, weighed) in enumerate(self._weighed):
             move = [slot.value(x + _STEP) - slot.value(x - _STEP) for x in at[:, k]]
-            rates_of_terms[:, k, end + number] = np.array(move) / (2 * _STEP * weighed.deviation)
-        return rates_of_terms
+            slopes[:, k, end + number] = np.array(move) / (2 * _STEP * weighed.deviation)
+        return slopes
 
     @cached_property
     def takes_columns(self) -> bool:

@@ -164,13 +164,11 @@ def _header(
     comment with as many words.
     """
     heads = _candidates(lines, data)
-    mapped_names = [name for name in mapped if not name.isdecimal()]
+    keys = [name for name in mapped if not name.isdecimal()]
     for number, columns in heads.items():
         names = {head.name.lower() for head in columns}
         is_known = not mapped and is_curve(names)
-        if is_known or (
-            mapped_names and all(any(h.is_called(name) for h in columns) for name in mapped_names)
-        ):
+        if is_known or (keys and all(any(h.is_called(name) for h in columns) for name in keys)):
             return number, columns
     width = len(_heads(lines[data[-1]]))
     alike = {number: columns for number, columns in heads.items() if len(columns) == width}

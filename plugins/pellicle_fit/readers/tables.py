@@ -78,8 +78,8 @@ def _curves(
     tables, heads, stated = read(path, mapped)
     names = [name for head in heads if (name := head.name.lower()) in NAMES]
     roles = {role for columns in tables.values() for role in columns}
-    columns_by_name = mapped or dict(zip(names, names, strict=True))
-    wrong = [name for name, text in columns_by_name.items() if text.split()[0] not in roles]
+    roles_by_name = mapped or dict(zip(names, names, strict=True))
+    wrong = [name for name, text in roles_by_name.items() if text.split()[0] not in roles]
     known = Calibration(**{**stated, **calibration.model_dump(exclude_none=True)})
 
     def curve(label: str, columns: Columns) -> Measurement:

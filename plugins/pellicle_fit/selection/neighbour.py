@@ -32,18 +32,14 @@ class Neighbour(NamedTuple):
     @classmethod
     def of_dict(cls, fit: Mapping[str, Any]) -> Neighbour:
         """Return the neighbour that the JSON data of a fit of one curve describe."""
-        explanations = {
-            frozenset(explanation["effects"]): explanation for explanation in fit["explanations"]
-        }
+        explanations = {frozenset(row["effects"]): row for row in fit["explanations"]}
         return cls(
             fit["verdict"] != Verdict.UNDESCRIBED.value,
-            frozenset(types for types, explanation in explanations.items() if explanation["tied"]),
-            frozenset(
-                t for t, explanation in explanations.items() if explanation["delta_aic"] > RULED_OUT
-            ),
+            frozenset(types for types, row in explanations.items() if row["tied"]),
+            frozenset(t for t, row in explanations.items() if row["delta_aic"] > RULED_OUT),
             {
-                types: {name: e["value"] for name, e in explanation["parameters"].items()}
-                for types, explanation in explanations.items()
+                types: {name: e["value"] for name, e in row["parameters"].items()}
+                for types, row in explanations.items()
             },
         )
 

@@ -128,23 +128,23 @@ class Answer:
         tied = [fit for fit in tied if fit not in self.not_held]
         if name == MODULUS:
             tied = [fit for fit in tied if fit.holds_modulus]
-        tied_estimates = [fit.estimates[name] for fit in tied if name in fit.estimates]
+        values = [fit.estimates[name] for fit in tied if name in fit.estimates]
         none = Estimate(0.0, None, None, "N/m", held=True)
         own = self.selected.parameters.get(name, none)
-        if not tied_estimates:
+        if not values:
             return own if tied or own.held else replace(own, low=None, high=None)
-        lows = [e.low for e in tied_estimates if e.low is not None]
-        highs = [e.high for e in tied_estimates if e.high is not None]
+        lows = [e.low for e in values if e.low is not None]
+        highs = [e.high for e in values if e.high is not None]
         low = min(lows) if len(lows) == len(tied) else None
-        high = max(highs) if len(highs) == len(tied_estimates) else None
+        high = max(highs) if len(highs) == len(values) else None
         ends = (
-            _over([e.ends[0] for e in tied_estimates], len(tied)),
-            _over([e.ends[1] for e in tied_estimates]),
+            _over([e.ends[0] for e in values], len(tied)),
+            _over([e.ends[1] for e in values]),
         )
         # Of what some of them lack, and need not lack, no value is one that all allow.
-        shared = len(tied_estimates) == len(tied) or self.verdict is Verdict.NO_SIGN
-        value = common_value(tied_estimates) if shared else np.nan
-        return Estimate(value, low, high, tied_estimates[0].unit, ends=ends)
+        shared = len(values) == len(tied) or self.verdict is Verdict.NO_SIGN
+        value = common_value(values) if shared else np.nan
+        return Estimate(value, low, high, values[0].unit, ends=ends)
 
 
 def _over(ends: Sequence[End], count: int = 0) -> End:
@@ -179,16 +179,12 @@ def agreement_of(fit: Candidate) -> Agreement:
     values, rises = objective.values(fit.minimum.at), []
     for i in range(count):
         names = ("curves", "noise", "memory")
-        objective_of_curve = replace(
-            objective, **{name: getattr(objective, name)[i : i + 1] for name in names}
-        )
+        alone = replace(objective, **{name: getattr(objective, name)[i : i + 1] for name in names})
         # A bead's own is that of the first curve that has the bead.
         of = (None, objective.beads[i], i)
         own = {(n, None if c is None else 0): v for (n, c), v in values.items() if c in of}
-        start = objective_of_curve.at_values(own)
-        rises.append(
-            objective_of_curve.chi_squared(start) - objective_of_curve.minimise(start).chi_squared
-        )
+        start = alone.at_values(own)
+        rises.append(alone.chi_squared(start) - alone.minimise(start).chi_squared)
     return Agreement(max(sum(rises), 0.0), shared * (count - 1), int(np.argmax(rises)))
 
 
@@ -250,7 +246,7 @@ def answer(
         types: explanation for types, explanation in candidates.items() if types not in excused
     }
     spared = (
-        frozenset[Types].intersection(*(explanation.ruled_out for explanation in like))
+        frozenset[Types].intersection(*(neighbour.ruled_out for neighbour in like))
         if like
         else NONE
     )

@@ -247,6 +247,4 @@ def _restarted(fit: Candidate, of_target: Types, fits: Fits) -> Candidate:
         _end(fit.types, of_target, fits, _FAR) - fit.objective.criterion(0.0), fit.chi_squared
     )
     least = _least(fit.objective, [*at], goal - _LOWER, fits[of_target])
-    return min(
-        fit, replace(fit, minimum=least), key=lambda candidate: candidate.minimum.chi_squared
-    )
+    return min(fit, replace(fit, minimum=least), key=lambda trial: trial.minimum.chi_squared)

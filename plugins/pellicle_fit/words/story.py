@@ -128,12 +128,7 @@ def _reason(answer: Answer) -> str:
     """Return why that is the verdict; empty if its words say it."""
     question = answer.question
     if answer.verdict is Verdict.UNDESCRIBED:
-        flaws = {
-            flaw
-            for judgement in answer.judgements
-            if not judgement.describes
-            for flaw in judgement.flaws
-        }
+        flaws = {flaw for check in answer.judgements if not check.describes for flaw in check.flaws}
         untried = listed([words_of_types(question, types) for types in answer.untried])
         why = next(flaw.value for flaw in Flaw if flaw in flaws)
         return f"{why}; {untried} could not be tried" if untried else why

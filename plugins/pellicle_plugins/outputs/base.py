@@ -101,20 +101,18 @@ class TableFigure(Output):
     def shown(self, runs: Runs) -> Runs:
         """Return the runs that `where` leaves."""
         table = runs.table
-        for name, value_of_axis in self.where.items():
+        for name, entry in self.where.items():
             require_axes(filter(lambda axis: axis != "step", table.coords), [name], "where")
-            axis, same = table[name], table[name].values == value_of_axis
+            axis, same = table[name], table[name].values == entry
             if axis.dtype.kind in "if":
                 try:
-                    value = Quantity(str(axis.attrs.get("units", "1")))(value_of_axis)
+                    value = Quantity(str(axis.attrs.get("units", "1")))(entry)
                 except ValueError as error:
                     raise ConfigError(f"{name}: {error}", "where") from None
                 same = np.isclose(axis.values, value, rtol=1e-9, atol=0.0)
             if not np.any(same):
                 values = column_of(axis).listing
-                raise ConfigError(
-                    f"{value_of_axis!r} is no value of {name}, which has {values}", "where"
-                )
+                raise ConfigError(f"{entry!r} is no value of {name}, which has {values}", "where")
             table = table.isel({axis.dims[0]: int(np.argmax(same))})
         return StoredRuns(table, runs.open, runs.configuration)
 

@@ -47,23 +47,21 @@ def curves_of_run(result: Result, mapped_steps: list[int], begin: int) -> list[P
     return pictures
 
 
-def _profiles(result: Result, mapped_steps: list[int], begin: int) -> Picture:
+def _profiles(result: Result, steps: list[int], begin: int) -> Picture:
     """Return the profile of a step, and those that take its place while another is mapped.
 
     Where many steps are mapped, some have the profile of the nearest one, as the caption says.
     """
-    count = -(-len(mapped_steps) // _PROFILES)
+    count = -(-len(steps) // _PROFILES)
 
     def of_step(index: int) -> Picture:
         label = label_of_step(result.dataset, index)
         return picture(profile(result, index), f"Pressure and gap along x, at {label}.")
 
     # The step whose map is shown first is drawn, and every `count`-th before and after it.
-    drawn = {index: of_step(index) for index in mapped_steps[begin % count :: count]}
-    frames = [
-        drawn[min(drawn, key=lambda drawn_step: abs(drawn_step - index))] for index in mapped_steps
-    ]
-    return replace(drawn[mapped_steps[begin]], by_frame=frames if len(drawn) > 1 else ())
+    drawn = {index: of_step(index) for index in steps[begin % count :: count]}
+    frames = [drawn[min(drawn, key=lambda drawn_step: abs(drawn_step - index))] for index in steps]
+    return replace(drawn[steps[begin]], by_frame=frames if len(drawn) > 1 else ())
 
 
 def curves_of_study(runs: Runs) -> Iterator[Picture]:
