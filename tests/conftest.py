@@ -24,6 +24,8 @@ from tests import durations
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
 
+    from tests.command import Cli
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the option that measures every test."""
@@ -87,6 +89,15 @@ def _no_figure_stays_open() -> Iterator[None]:
     yield
     if pyplot := sys.modules.get("matplotlib.pyplot"):
         pyplot.close("all")
+
+
+@pytest.fixture
+def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Cli:
+    """Return `tests.command.call`, in an empty folder."""
+    from tests.command import call
+
+    monkeypatch.chdir(tmp_path)
+    return call
 
 
 StartDask = Callable[..., AbstractContextManager[str]]

@@ -108,10 +108,10 @@ def _curve(body: HasAbelSlope, length: float, last: int) -> BSpline:
     """Return log(P/E*), log(k/E*) and ∂ log P/∂s over log δ up to a node and beyond."""
     from scipy.interpolate import make_interp_spline
 
-    found = contacts(body, _nodes(body, last), length)
+    states = contacts(body, _nodes(body, last), length)
     # Under a flat end there is no contact of less than its radius.
-    touches = (found.depth > 0) & (found.force > 0)
-    touches[1:] &= found.depth[1:] > (1 + _RISE) * np.maximum.accumulate(found.depth)[:-1]
-    depth, force, stiffness, _, by_length = (part[touches] for part in found)
+    touches = (states.depth > 0) & (states.force > 0)
+    touches[1:] &= states.depth[1:] > (1 + _RISE) * np.maximum.accumulate(states.depth)[:-1]
+    depth, force, stiffness, _, by_length = (part[touches] for part in states)
     values = np.column_stack([np.log(force), np.log(stiffness), by_length / force])
     return make_interp_spline(np.log(depth), values, 5)

@@ -47,11 +47,11 @@ class _Power(NamedTuple):
 @cache
 def _one_variable(exponent: int) -> Interpolant:
     """Return log(P/P₀) of the body h = x^exponent over s / δ^(1/exponent)."""
-    found = contacts(_Power(exponent), 1 / _LENGTHS, 1.0)
+    states = contacts(_Power(exponent), 1 / _LENGTHS, 1.0)
     # Without tension F = 2 E* (1 − 1/(exponent + 1)) δ^(1 + 1/exponent).
-    root = found.depth ** (1 / exponent)
-    classical = 2 * exponent / (exponent + 1) * found.depth * root
-    x, log_ratio = 1 / root, np.log(found.force / classical)
+    root = states.depth ** (1 / exponent)
+    classical = 2 * exponent / (exponent + 1) * states.depth * root
+    x, log_ratio = 1 / root, np.log(states.force / classical)
     return stretched_spline(np.append(0.0, x), np.append(0.0, log_ratio), SCALE)
 
 

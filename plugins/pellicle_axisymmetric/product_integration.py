@@ -63,13 +63,13 @@ def weights(
 
     far = (behind <= -length) | ((ahead <= -length) & (not above))
     if np.any(far):
-        chosen = column[far]
-        separation = _separation(chosen, panel.nodes)
-        values = kernel(_chord(chosen, panel.nodes, separation), panel.nodes, chosen)
+        targeted = column[far]
+        separation = _separation(targeted, panel.nodes)
+        values = kernel(_chord(targeted, panel.nodes, separation), panel.nodes, targeted)
         out[far] = values * rule[1] * length / 2
 
     xi, unit = clustered(power)
-    for side, distance, other, end in (
+    for side, distance, opposite, end in (
         (1.0, ahead, behind, panel.start),
         (-1.0, behind, ahead, panel.end),
     ):
@@ -78,14 +78,14 @@ def weights(
         if (above and side < 0) or not np.any(pick):
             continue
         span = np.minimum(distance[pick], length)[:, None]
-        offset = np.maximum(-other[pick], 0)[:, None] + span * xi
-        chosen = column[pick]
-        inside = other[pick][:, None] > 0
+        offset = np.maximum(-opposite[pick], 0)[:, None] + span * xi
+        targeted = column[pick]
+        inside = opposite[pick][:, None] > 0
         nearest = Points(
-            np.where(inside, chosen.psi, end.psi), np.where(inside, chosen.eta, end.eta)
+            np.where(inside, targeted.psi, end.psi), np.where(inside, targeted.eta, end.eta)
         )
         source = nearest.moved(side * span * xi)
-        values = kernel(_chord(chosen, source, offset), source, chosen)
+        values = kernel(_chord(targeted, source, offset), source, targeted)
         local = side * (1 - 2 * (distance[pick][:, None] - offset) / length)
         basis = legvander(local, order - 1) @ rule[2]
         out[pick] += np.einsum("tq,tqj->tj", values * unit * span, basis)

@@ -98,8 +98,8 @@ def _series(indenter: HasAbelSlope, length: float, panel: int) -> Array:
     """Return the Chebyshev coefficients of log F₁/E*, log δ₁ and log k/E*, shape (n, 3)."""
     nodes = chebyshev.chebpts1(_NODES)
     radii = radius_at(indenter, _PANEL * (panel + (nodes + 1) / 2))
-    found = contacts(indenter, radii, length)
-    rows = np.log(np.column_stack([found.force, found.depth, found.stiffness]))
+    states = contacts(indenter, radii, length)
+    rows = np.log(np.column_stack([states.force, states.depth, states.stiffness]))
     series = np.asarray(chebyshev.chebfit(nodes, rows, _NODES - 1), dtype=np.float64)
     error = np.abs(series[-2:]).max()
     if not error <= TOLERANCE:

@@ -126,8 +126,8 @@ def _moments(body: HasAbelSlope, radii: bytes) -> tuple[Array, Array]:
             modes = modes.reshape(*eta.shape, -1)
         part = "anm" if kinks else "nm"
         values = span * weight * h, span * weight * (h + x * body.abel_slope(x))
-        one, other = (np.einsum(f"an,{part}->am", value, modes) for value in values)
-        integral, slope = integral + one, slope + other
+        zeroth, first = (np.einsum(f"an,{part}->am", value, modes) for value in values)
+        integral, slope = integral + zeroth, slope + first
     return 2 * np.pi * radius[:, None] * integral, 2 * np.pi * np.asarray(slope)
 
 

@@ -59,7 +59,7 @@ def check(
         print_table(table)
         for sentence in (*sentences, *words.contacts_at_edge(checked)):
             echo(sentence)
-    raise typer.Exit(NOT_CONVERGED if any(one.advice.at_edge for one in checked) else 0)
+    raise typer.Exit(NOT_CONVERGED if any(entry.advice.at_edge for entry in checked) else 0)
 
 
 def _allowed(text: str) -> float:

@@ -79,8 +79,8 @@ def errors_of_runs(advised: Sequence[Advised], allowed: float) -> Table:
 
 def advice_on_runs(advised: Sequence[Advised], allowed: float) -> Iterator[str]:
     """Yield how many runs exceed the allowed error, and which are the worst."""
-    errors = [(w, one.name) for one in advised if (w := _worst(one.advice, "error")) == w]
-    areas = [(w, one.name) for one in advised if (w := _worst(one.advice, "area_error")) == w]
+    errors = [(w, run.name) for run in advised if (w := _worst(run.advice, "error")) == w]
+    areas = [(w, run.name) for run in advised if (w := _worst(run.advice, "area_error")) == w]
     many = sum(w > allowed for w, _ in errors)
     yield (
         f"{len(advised)} runs; in {many} the error of force or depth may exceed "
@@ -90,7 +90,7 @@ def advice_on_runs(advised: Sequence[Advised], allowed: float) -> Iterator[str]:
         (worst, of_force), (area, of_area) = max(errors), max(areas)
         yield f"the worst: {_share(worst)}, with {of_force}; of area {_share(area)}, with {of_area}"
     yield from _of_waves(advised)
-    if all(one.advice.size and not one.advice.at_edge for one in advised):
+    if all(run.advice.size and not run.advice.at_edge for run in advised):
         yield (
             f"every contact fits into a smaller domain: {_domain(advised)}; the points of a run "
             "are for the domain that fits its own"
@@ -99,7 +99,7 @@ def advice_on_runs(advised: Sequence[Advised], allowed: float) -> Iterator[str]:
 
 def contacts_at_edge(advised: Sequence[Advised]) -> Iterator[str]:
     """Yield which steps reach the edge of the domain, and a domain that holds all; or nothing."""
-    reaching = [one for one in advised if one.advice.at_edge]
+    reaching = [entry for entry in advised if entry.advice.at_edge]
     for name, run, advice, _ in reaching:
         steps = f"step{'s' * (len(advice.at_edge) > 1)} {', '.join(map(str, advice.at_edge))}"
         what = f"the contact{', or the zone around it,' * bool(run.interaction)} of {steps}"
@@ -109,7 +109,7 @@ def contacts_at_edge(advised: Sequence[Advised]) -> Iterator[str]:
 
 
 def _of_waves(advised: Sequence[Advised]) -> Iterator[str]:
-    cells = min(one.advice.cells_in_wave or math.inf for one in advised)
+    cells = min(entry.advice.cells_in_wave or math.inf for entry in advised)
     if cells < _IN_WAVE * (1 - 1e-9):
         yield (
             f"the shortest wave of the indenter has {cells:.3g} cells: areas are known to a tenth "
@@ -124,7 +124,7 @@ def _erring(advice: Advice) -> list[str]:
 
 def _domain(advised: Sequence[Advised]) -> str:
     """Return the setting of a domain that holds the contacts of several runs."""
-    x, y = (max(one.advice.size[n] for one in advised if one.advice.size) for n in (0, 1))
+    x, y = (max(entry.advice.size[n] for entry in advised if entry.advice.size) for n in (0, 1))
     return f'grid.size = ["{readable(x, "m", 3)}", "{readable(y, "m", 3)}"]'
 
 

@@ -160,17 +160,17 @@ def register_commands(register: pl.RegisterCommand) -> None:
 
 def _given(fields: Set[str], options: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields that options give."""
-    given = {name: value for name, value in options.items() if name in fields}
+    table = {name: value for name, value in options.items() if name in fields}
     # An option that is left out is None, a list without entries, or a flag that is off.
-    given = {name: v for name, v in given.items() if v not in (None, ()) and v is not False}
-    for name in given.keys() & {"radius", "diameter"}:
-        first, *others = given[name]
-        given[name] = [first, *others] if others else first
-    if "model" in given:
-        given["model"] = [name for name in given["model"] if name != "none"]
-    if "rivals" in given:
-        given["rivals"] = [text.split(",") for text in given["rivals"] if text != "none"]
-    return given
+    table = {name: v for name, v in table.items() if v not in (None, ()) and v is not False}
+    for name in table.keys() & {"radius", "diameter"}:
+        first, *others = table[name]
+        table[name] = [first, *others] if others else first
+    if "model" in table:
+        table["model"] = [name for name in table["model"] if name != "none"]
+    if "rivals" in table:
+        table["rivals"] = [text.split(",") for text in table["rivals"] if text != "none"]
+    return table
 
 
 def _fit(

@@ -251,7 +251,7 @@ class FitConfig(FromFile, Calibration):
             folder, data = Path(base).parent, read_toml(Path(base))
             if "curves" in data.keys() - options.keys():
                 paths = map(str, as_list(data["curves"]))
-                data["curves"] = [one for path in paths for one in expanded(path, folder)]
+                data["curves"] = [file for path in paths for file in expanded(path, folder)]
             with paths_relative_to(folder):
                 return cls.merged(data, overrides, **options)
         if isinstance(base, FitConfig):

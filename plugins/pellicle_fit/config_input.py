@@ -33,12 +33,12 @@ def list_or_entry(entries: Any) -> BeforeValidator:
 
 def with_radius(fields: Mapping[str, Any]) -> dict[str, Any]:
     """Return fields of an indenter with half of a diameter as the radius."""
-    found = dict(fields)
+    table = dict(fields)
     # A diameter beside a radius is no field.
-    if "radius" not in found and not isinstance(found.get("diameter", []), (list, tuple)):
+    if "radius" not in table and not isinstance(table.get("diameter", []), (list, tuple)):
         with all_problems() as within, within("diameter"):
-            found["radius"] = Quantity("m", above=0)(found.pop("diameter")) / 2
-    return found
+            table["radius"] = Quantity("m", above=0)(table.pop("diameter")) / 2
+    return table
 
 
 def indenter_or_table(value: object) -> Any:
@@ -49,10 +49,12 @@ def indenter_or_table(value: object) -> Any:
     try:
         return registry().make(Indenter, table)
     except ConfigError as error:
-        given = dict(table) if isinstance(table, Mapping) else {"": None}
-        if problems := [one for one in error.problems if one.field.partition(".")[0] in given]:
+        keys = dict(table) if isinstance(table, Mapping) else {"": None}
+        if problems := [
+            problem for problem in error.problems if problem.field.partition(".")[0] in keys
+        ]:
             raise ConfigError(problems) from None
-        return given
+        return keys
 
 
 def fields_of(indenter: object) -> Mapping[str, FieldInfo]:
@@ -85,7 +87,9 @@ def recorded(path: Path) -> Any:
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         data, rows = content["configuration"], content["curves"]
-        origins = [one["data"] for row in rows for one in row.get("curves", [row]) if "data" in one]
+        origins = [
+            curve["data"] for row in rows for curve in row.get("curves", [row]) if "data" in curve
+        ]
         if data["curves"] and all(origin["file"] for origin in origins):
             return data
     except OSError as error:

@@ -92,11 +92,11 @@ class Fitted(Quantity):
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        held = super().__get_pydantic_json_schema__(schema, handler)
+        number = super().__get_pydantic_json_schema__(schema, handler)
         deviation = Quantity(self.unit, above=0).__get_pydantic_json_schema__(schema, handler)
-        parts = {"value": held, "deviation": deviation}
+        parts = {"value": number, "deviation": deviation}
         weighed = {"properties": parts, "required": [*parts], "additionalProperties": False}
-        return {"anyOf": [held, {"type": "object"} | weighed], "unit": self.unit}
+        return {"anyOf": [number, {"type": "object"} | weighed], "unit": self.unit}
 
 
 def fitted(description: str) -> Any:
@@ -131,8 +131,8 @@ class Fittable(Component):
 @cache
 def quantities(component: type[Component]) -> Mapping[str, Fitted]:
     """Return the quantities of a component by name."""
-    found = {name: quantity_of(info) for name, info in component.model_fields.items()}
-    return {name: q for name, q in found.items() if isinstance(q, Fitted)}
+    infos = {name: quantity_of(info) for name, info in component.model_fields.items()}
+    return {name: q for name, q in infos.items() if isinstance(q, Fitted)}
 
 
 class Solid(Fittable):

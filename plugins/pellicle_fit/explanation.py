@@ -156,8 +156,8 @@ class Explanation:
         or one by one.
         """
         if not together:
-            each = [known.balance(curve) for known in self._each()]
-            return Balance(*map(np.array, zip(*each, strict=True)))
+            balances = [known.balance(curve) for known in self._each()]
+            return Balance(*map(np.array, zip(*balances, strict=True)))
         of, step = self._forces(curve), DIFFERENCE * curve.contact.deepest
         if of.give is None:
             depth, force = of.base, of.pushed(of.base)
@@ -247,9 +247,9 @@ def columns_are_rows(explanation: Explanation, curve: Curve) -> bool:
         forces = trials.balance(curve).recorded
     except Exception:  # Of another author's code any may come.
         return False
-    each = trials.balance(curve, together=False).recorded
-    far = np.inf if forces.shape != each.shape else np.max(np.abs(forces - each))
-    return bool(far <= _ROUNDING * np.max(np.abs(each)))
+    one_by_one = trials.balance(curve, together=False).recorded
+    far = np.inf if forces.shape != one_by_one.shape else np.max(np.abs(forces - one_by_one))
+    return bool(far <= _ROUNDING * np.max(np.abs(one_by_one)))
 
 
 class _Forces(NamedTuple):

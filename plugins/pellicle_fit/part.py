@@ -44,8 +44,8 @@ def passes(
         [i for i, of in enumerate(near) if bool(of) is spared] for spared in (False, True)
     )
 
-    def open_of(chosen: Iterable[int]) -> list[int]:
-        return [i for i in chosen if tasks[i] and rows[i].is_open]
+    def open_of(numbers: Iterable[int]) -> list[int]:
+        return [i for i in numbers if tasks[i] and rows[i].is_open]
 
     if part is None:
         yield open_of(full), work
@@ -53,7 +53,7 @@ def passes(
         return
     own = open_of(part.of(spared))
     yield open_of(part.of(full)), partial(fit_alone, work=work, wait=False)
-    needed = {other.row for i in own for other in near[i]}
+    needed = {neighbour.row for i in own for neighbour in near[i]}
     yield open_of(sorted(needed)), partial(fit_alone, work=work, wait=True)
     yield own, partial(fit_alone, work=work, wait=False)
 

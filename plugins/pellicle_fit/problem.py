@@ -62,12 +62,14 @@ class FitProblem:
         """
         config, named = self.config, [*zip(self.names, self.measured, strict=True)]
         with status_line("fitting", progress):
-            found = answer(list(self.curves), **self.arguments, like=like)
-            left_out = next((rows for one in self.measured if (rows := one.left_out)), None)
-            advice = advise(found, left_out, config)
-        data = data_of_fit(found, named, advice, self.poissons_ratio, config)
+            result = answer(list(self.curves), **self.arguments, like=like)
+            left_out = next(
+                (rows for measurement in self.measured if (rows := measurement.left_out)), None
+            )
+            advice = advise(result, left_out, config)
+        data = data_of_fit(result, named, advice, self.poissons_ratio, config)
         record = record_of(config, [curve["data"] for curve in data["curves"]], self.began)
-        return Fit(data | record, found, config)
+        return Fit(data | record, result, config)
 
 
 def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = False) -> FitProblem:
@@ -102,28 +104,28 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
     bodies, layers, ratio = _on_solid(config, indenters, measured, point, progress)
     curves = tuple(
         Curve(
-            one.position,
-            one.force,
+            measured_curve.position,
+            measured_curve.force,
             body,
-            time=one.time,
-            unloading=one.unloading,
-            stiffness=one.stiffness,
+            time=measured_curve.time,
+            unloading=measured_curve.unloading,
+            stiffness=measured_curve.stiffness,
             touch=point,
-            sines=one.sines,
+            sines=measured_curve.sines,
         )
-        for one, body in zip(measured, bodies, strict=True)
+        for measured_curve, body in zip(measured, bodies, strict=True)
     )
     model = _known(config.model, fix, ratio)
     # What is given leaves nothing to ask.
-    given = [effect for effect in model if quantities(type(effect)) and not effect.open]
+    known_effects = [effect for effect in model if quantities(type(effect)) and not effect.open]
     baseline = [_effect(name) for name in _BASELINES[config.baseline]]
     # A curve that was made by the polynomial in common use is no sign of a tension.
     of_layers = [layer.model_dump(exclude={"type"}, exclude_none=True) for layer in layers]
     forms = [[_effect("dimitriadis", **fields)] for fields in of_layers if config.rivals]
     arguments = {
-        "model": [effect for effect in model if effect not in given],
+        "model": [effect for effect in model if effect not in known_effects],
         "rivals": [r for rival in (*config.rivals, *forms) if (r := _known(rival, fix, ratio))],
-        "common": [*given, *baseline, *layers],
+        "common": [*known_effects, *baseline, *layers],
         "fix": {name: fix[name] for name in quantities(Solid).keys() & fix.keys()},
         "uncertainty": errors(config.uncertainty),
     }
@@ -148,8 +150,8 @@ def _on_solid(
     if isinstance(thickness, float) and ratio is not None:
         # A punch is too wide for the curve at any depth, or at none.
         if ratio >= 0 and all(
-            isinstance(one, HasLayerForceCurve) and one.layer_depth_limit(thickness, ratio) > 0
-            for one in indenters
+            isinstance(body, HasLayerForceCurve) and body.layer_depth_limit(thickness, ratio) > 0
+            for body in indenters
         ):
             layer = _effect("layer", thickness=thickness, poissons_ratio=ratio)
             return [*indenters], [layer], ratio
@@ -176,14 +178,14 @@ def _known(
     effects: Sequence[Effect], fix: Mapping[str, float], ratio: float | None
 ) -> list[Effect]:
     """Return effects with what is fixed, and the solid's ratio; none for a tension fixed at 0."""
-    found = []
+    known_effects = []
     for effect in effects:
         own = {name: fix[name] for name in quantities(type(effect)).keys() & fix.keys()}
         if ratio and hasattr(effect, _RATIO) and _RATIO not in effect.model_fields_set:
             own[_RATIO] = max(ratio, 0.0)
         if own.get("tension") != 0:
-            found.append(effect.model_copy(update=own))
-    return found
+            known_effects.append(effect.model_copy(update=own))
+    return known_effects
 
 
 def _effect(name: str, **fields: Any) -> Effect:

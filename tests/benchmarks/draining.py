@@ -18,7 +18,9 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import product
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
@@ -26,8 +28,8 @@ from scipy.optimize import least_squares
 from scipy.special import erf, erfc, erfcx
 
 import pellicle as pl
+from tests.draining_gels import MODULUS, RADIUS, Array, Gel, measured, predicted, solved
 
-Array = Any
 SURFACES = "open", "sealed"
 RATIOS = 1e-9, 0.25, 0.5, 0.75, 0.97
 """ν / (1 − ν) at which coefficients are fitted."""
@@ -136,70 +138,6 @@ def print_means() -> None:
 
 # --- Against the kernel ------------------------------------------------------------------------
 
-RADIUS, DEPTH, MODULUS = 5e-6, 8e-7, 1e4
-
-
-class Gel(NamedTuple):
-    """A gel, with lengths over those of the contact at the end of the ramp."""
-
-    ratio: float
-    """ν."""
-    drains: float
-    """D T / a² of a ramp of 1 s."""
-    surface: str = "open"
-    length: float = 0.0
-    """s/a."""
-
-    @property
-    def diffusivity(self) -> float:
-        """D [m²/s]."""
-        return self.drains * RADIUS * DEPTH
-
-    @property
-    def tension(self) -> float:
-        """τ₀ [N/m]."""
-        return self.length * float(np.sqrt(RADIUS * DEPTH)) * MODULUS / 2
-
-
-@cache
-def solved(gel: Gel, seconds: float = 1.0, radius: float = RADIUS, n: int = 64) -> Array:
-    """Return time [s], depth [m] and force [N] of a ramp and a hold three times as long."""
-    time = seconds * np.append(np.linspace(0, 1, 61)[1:], 1 + np.geomspace(0.01, 3, 30))
-    depth = DEPTH * np.minimum(time / seconds, 1)
-    shear = MODULUS * (1 - gel.ratio) / 2
-    solid: dict[str, Any] = {"type": "poroelastic", "shear_modulus": shear, "surface": gel.surface}
-    solid |= {"poissons_ratio": gel.ratio, "diffusivity": gel.diffusivity}
-    if gel.tension:
-        solid = {"type": "coated", "tension": gel.tension, "substrate": solid}
-    run = {
-        "grid": {"points": n, "size": 3.1 * float(np.sqrt(radius * DEPTH))},
-        "kernel": solid,
-        "indenter": {"type": "paraboloid", "radius": radius},
-        "loading": {"depth": depth.tolist(), "time": time.tolist()},
-        "solver": {"type": "active_set", "tolerance": 1e-6},
-    }
-    result = pl.run(run, progress=False)
-    return np.array([time, depth, result.dataset.force.values])
-
-
-def predicted(gel: Gel, time: Array, depth: Array) -> Array:
-    """Return the force [N] of the effect along a path."""
-    from pellicle_fit.contact.curve import Curve
-    from pellicle_fit.effect import Effect, Solid
-    from pellicle_fit.explanation import Explanation
-
-    values = {"drained_ratio": gel.ratio, "diffusivity": gel.diffusivity, "surface": gel.surface}
-    tables: list[dict[str, Any]] = [{"type": "poroelastic", **values}]
-    tables += [{"type": "tension", "tension": gel.tension}] if gel.tension else []
-    effects = [pl.registry().make(Effect, table) for table in tables]
-    position: Array = np.append(-1e-3 * DEPTH, depth)
-    unread: Array = np.arange(position.size) * 1.0
-    bead: Any = pl.indenter("paraboloid", radius=RADIUS)
-    moves_out = np.zeros(position.size, bool)
-    rows = Curve(position, unread, bead, np.append(-1e-3, time), moves_out)
-    solid = Solid(reduced_modulus=MODULUS, contact_point=0.0)
-    return Explanation(solid, tuple(effects)).force(rows)[1:]
-
 
 def print_forces() -> None:
     """Print the greatest difference of the effect from the kernel, over the largest force."""
@@ -207,30 +145,14 @@ def print_forces() -> None:
     for surface, length in product(SURFACES, (0.0, 0.3, 1.0, 3.0, 10.0)):
         for ratio, drains in product((0.0, 0.2, 0.4), (0.03, 0.3, 3.0)):
             gel = Gel(ratio, drains, surface, length)
-            time, depth, force = solved(gel, n=96)
-            off = np.abs(predicted(gel, time, depth) - force) / force.max()
+            force = solved(gel, points=96)[2]
+            off = np.abs(predicted(gel) - force) / force.max()
             print(f"{surface},{ratio},{length},{drains},{off[4:60].max():.4f},{off[60:].max():.4f}")
 
 
 # --- Fits --------------------------------------------------------------------------------------
 
-ROWS = 350
 PROTOCOLS = "approach", "hold", "speeds", "radii"
-
-
-def measured(
-    gel: Gel, random: np.random.Generator, noise: float, path: Array, *, holds: bool
-) -> tuple[Array, Array, Array]:
-    """Return position [m], force [N] with noise of a share of the largest, and time [s]."""
-    known, deep, force = path
-    seconds = known[59]
-    time = np.linspace(-0.3, 1, ROWS) * seconds
-    if holds:
-        time = np.append(time, np.linspace(1, 4, ROWS + 1)[1:] * seconds)
-    depth = DEPTH * np.minimum(time / seconds, 1)
-    over = np.interp(np.log(np.maximum(time, 1e-6 * seconds)), np.log(known), force / deep**1.5)
-    exact = over * np.maximum(depth, 0) ** 1.5
-    return depth + 1e-6, exact + noise * exact.max() * random.standard_normal(time.size), time
 
 
 def outcome(gel: Gel, protocol: str, number: int) -> dict[str, Any]:
@@ -242,7 +164,7 @@ def outcome(gel: Gel, protocol: str, number: int) -> dict[str, Any]:
     for i, (seconds, share) in enumerate(paths.get(protocol, ((1.0, 1.0),))):
         radii.append(share * RADIUS)
         path = solved(gel, seconds, share * RADIUS)
-        curves[str(i)] = measured(gel, random, noise, path, holds=protocol == "hold")
+        curves[str(i)] = measured(path, random, noise, holds=protocol == "hold")
     options: dict[str, Any] = {
         "indenter": "paraboloid",
         "radius": radii if len(set(radii)) > 1 else RADIUS,

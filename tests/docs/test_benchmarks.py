@@ -26,20 +26,10 @@ SCRIPTS = {
         20,
         {"rough, N = 32": r"[1-4]?\d"},
     ),
-    "next_step.py": (
-        ["--cases", "rough", "--points", "32", "--number", "4"],
-        3,
-        {"cold": r"[2-5]\d\.\d", "two states": r"1\d\.\d", "contact known": r"\d\.\d"},
-    ),
     "cost.py": (
         ["--cases", "rough", "punch", "--points", "32", "--tension", "0.02"],
         2,
         {"applications": r"[1-3]\d", "contact": r"0\.\d+", "seconds": r"\d+\.\d+"},
-    ),
-    "threads.py": (
-        ["--points", "32", "--repeats", "1"],
-        2 * 2,
-        {"bits": "same", "one ÷ several": r"\d+\.\d+"},
     ),
 }
 """Options of a script, number of rows, and patterns that all cells of a column match."""

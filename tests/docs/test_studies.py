@@ -12,14 +12,13 @@ import pytest
 import xarray as xr
 from images import compliance
 from jsonschema import Draft202012Validator
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli.app import app
 from pellicle.config.study import from_toml
 from pellicle_axisymmetric.adhesive_contact import Adhesion
 from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
+from tests.command import call
 from tests.docs.blocks import ROOT
 
 STUDIES = ROOT / "docs/studies"
@@ -30,10 +29,7 @@ Rows = list[dict[str, str]]
 def run(name: str, folder: Path, *overrides: str) -> None:
     """Carry out a study of docs/studies as a user would."""
     words = [word for text in overrides for word in ("--set", text)]
-    done = CliRunner().invoke(
-        app, ["run", str(STUDIES / name), "-o", str(folder), "--threads", "1", *words]
-    )
-    assert done.exit_code == 0, done.output
+    call("run", STUDIES / name, "-o", folder, "--threads", "1", *words)
 
 
 def drawn(path: Path, **which: str) -> Rows:

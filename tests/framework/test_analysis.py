@@ -161,6 +161,23 @@ def test_perimeter_of_a_disc(spacing: tuple[float, float]) -> None:
     assert perimeter(moved, grid) == pytest.approx(perimeter(disc, grid), rel=1e-12)
 
 
+@pytest.mark.parametrize("spacing", [(1.0, 1.0), (1.0, 0.6), (0.5, 1.0)])
+def test_cells_that_are_no_squares(spacing: tuple[float, float]) -> None:
+    """Edges b along y and c along x count b (α + ½π cos α)/2, tan α = dy/dx; moments are exact."""
+    (dx, dy), angle = spacing, np.arctan2(spacing[1], spacing[0])
+    grid = pl.Grid(points=(60, 50), size=(60 * dx, 50 * dy))
+    block = np.zeros(grid.shape, dtype=bool)
+    block[10:50, 15:25] = True
+    along, across = 40 * dx, 10 * dy
+    border = across * (angle + np.pi / 2 * np.cos(angle))
+    border += along * (np.pi / 2 - angle + np.pi / 2 * np.sin(angle))
+    # A diagonal through a corner meets the border once.
+    assert perimeter(block, grid) == pytest.approx(border, abs=np.hypot(dx, dy))
+    found = ellipse(block, grid)
+    axes = sorted([along / np.sqrt(3), across / np.sqrt(3)], reverse=True)
+    assert [found.semi_major_axis, found.semi_minor_axis] == pytest.approx(axes, rel=1e-12)
+
+
 @pytest.mark.parametrize("angle", np.radians([0, 15, 22.5, 45, 70]))
 def test_perimeter_of_a_strip_is_within_its_bounds(angle: float) -> None:
     """A straight border comes out between 5.2 % short and 2.6 % long."""

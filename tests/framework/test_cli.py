@@ -6,32 +6,16 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner, Result
 
 import pellicle as pl
-from pellicle.cli.app import app
 from pellicle.components.installed import registry
+from tests.command import Cli
 from tests.pictures import drawn_width
 
 SMALL = ["--set", "grid.points=32", "--set", "loading.depth=['10 um', '20 um']"]
-Cli = Callable[..., Result]
-
-
-@pytest.fixture
-def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Cli:
-    """Return a function that calls the command line in an empty folder and checks its exit code."""
-    monkeypatch.chdir(tmp_path)
-
-    def call(*arguments: str, code: int = 0) -> Result:
-        result = CliRunner().invoke(app, arguments)
-        assert result.exit_code == code, result.output
-        return result
-
-    return call
 
 
 def _files_named(stdout: str) -> list[Path]:

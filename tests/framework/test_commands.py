@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
+from functools import partial
 from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
 import xarray as xr
-from typer.testing import CliRunner, Result
 
 from pellicle import results
-from pellicle.cli.app import app
 from pellicle.plugins import commands
 from pellicle.plugins.origins import GROUP
+from tests import command
 from tests.installed import entry_point
 
 HELLO = '''
@@ -71,11 +71,7 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
     forget()
 
 
-def call(*words: str, code: int = 0) -> Result:
-    """Call the command line, and check its exit code."""
-    done = CliRunner().invoke(app, words, env={"COLUMNS": "200"})
-    assert done.exit_code == code, done.output
-    return done
+call = partial(command.call, COLUMNS="200")
 
 
 def test_a_function_is_a_command(install: Install) -> None:
@@ -139,9 +135,9 @@ class Table:
 def test_what_a_command_wrote_is_shown(install: Install) -> None:
     """The command shows and draws its table; where it cannot, that is told as before."""
     columns = xr.Dataset({"a": ("x", [1.0])})
-    for command in ("hello", "nobody"):
-        attributes = {"command": command, "configuration": "{}", "versions": ""}
-        results.write(columns.assign_attrs(attributes), Path(command) / "table.h5")
+    for name in ("hello", "nobody"):
+        attributes = {"command": name, "configuration": "{}", "versions": ""}
+        results.write(columns.assign_attrs(attributes), Path(name) / "table.h5")
     install(WRITTEN + registers("hello, written=f'{__name__}:Table'"))
     assert call("show", "hello", "--si").stdout == "table.h5, True, False\n"
     drawn = call("plot", "hello/table.h5", "--format", "svg", "--format", "pdf").stdout

@@ -6,11 +6,10 @@ from pathlib import Path
 from typing import Any, Literal
 
 import pytest
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli.app import app
 from pellicle_plugins.outputs.csv import Csv
+from tests.command import call
 
 RUN: dict[str, Any] = {
     "grid": {"points": 16, "size": "0.4 mm"},
@@ -53,8 +52,7 @@ def test_the_command_has_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     (tmp_path / "a.toml").write_text(
         pl.Run(**RUN, outputs=[{"type": "csv"}]).to_toml(), encoding="utf-8"
     )
-    done = CliRunner().invoke(app, ["run", str(tmp_path / "a.toml"), "-o", str(tmp_path / "a")])
-    assert done.exit_code == 2
+    done = call("run", tmp_path / "a.toml", "-o", tmp_path / "a", code=2)
     assert "error: output 'csv' failed: ValueError: boom\n" in done.output
 
 
@@ -62,8 +60,7 @@ def test_coarse_steps_are_told_once(tmp_path: Path) -> None:
     """The table marks them, and one line says why."""
     configuration = pl.Run(**RUN | {"loading": {"depth": ["1 nm", "2 nm", "20 um"]}}, outputs=[])
     (tmp_path / "a.toml").write_text(configuration.to_toml(), encoding="utf-8")
-    done = CliRunner().invoke(app, ["run", str(tmp_path / "a.toml"), "-o", str(tmp_path / "a")])
-    assert done.exit_code == 0
+    done = call("run", tmp_path / "a.toml", "-o", tmp_path / "a")
     assert [line.split()[-1] for line in done.output.splitlines()[1:4]] == [
         "coarse",
         "coarse",

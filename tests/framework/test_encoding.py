@@ -14,6 +14,7 @@ from pellicle.cli.app import app
 from pellicle.files import read_text
 from pellicle.schema.from_file import read_toml
 from pellicle_fit.files.readers import read as read_curves
+from tests.command import call
 
 CURVE = "position (µm),force (nN)\n0,0\n1,2\n2,5\n"
 HEIGHTS = "# heights, µm\n1 2\n3 4\n"
@@ -37,7 +38,7 @@ def test_json_is_ascii(encoding: str, words: list[str]) -> None:
     printed = CliRunner(charset=encoding).invoke(app, words)
     assert printed.exit_code == 0, printed.exception
     assert printed.stdout_bytes.isascii()
-    assert json.loads(printed.stdout_bytes) == json.loads(CliRunner().invoke(app, words).stdout)
+    assert json.loads(printed.stdout_bytes) == json.loads(call(*words).stdout)
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])

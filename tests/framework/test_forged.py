@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli.app import app
 from pellicle.results import storage
+from tests.command import call
 from tests.small_run import RUN
 
 TEXT: Any = np.array("x", dtype=object)
@@ -118,8 +117,7 @@ def test_a_forgery_is_refused_in_words(
     data = (storage.table if "study" in kind else storage.read)(folder / kind)
     storage.write(forged(data), path)
     for command in (["show"], ["show", "--json"], ["plot"]):
-        done = CliRunner().invoke(app, [*command, str(path)])
-        assert done.exit_code == 2, done.output
+        done = call(*command, path, code=2)
         assert done.output.startswith(f"error: {path}: ")
         assert "Traceback" not in done.output
     assert list(tmp_path.iterdir()) == [path]
@@ -140,6 +138,6 @@ def test_what_is_written_is_sound(folder: Path) -> None:
     }
     pl.run(sticks, progress=False, threads=1).save(folder / "sticks.h5")
     for kind in ("r.h5", "s", "sticks.h5"):
-        done = CliRunner().invoke(app, ["show", str(folder / kind)])
+        done = call("show", folder / kind)
         assert done.exit_code in (0, 1), done.output
         assert "error: " not in done.output

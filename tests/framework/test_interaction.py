@@ -7,10 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli.app import app
+from tests.command import call
 
 FILE = """
 outputs = []
@@ -75,7 +74,7 @@ def test_adds_variables(file: Path) -> None:
     assert set(with_law.dataset.data_vars) >= ADDED
     header = next(file.parent.glob("*.csv")).read_text(encoding="utf-8").partition("\n")[0]
     assert {"zone_area [m2]", "zone_width [m]", "energy [J]"} <= {*header.split(",")}
-    shown = CliRunner().invoke(app, ["show", str(file.with_suffix(".h5"))]).output
+    shown = call("show", file.with_suffix(".h5")).output
     assert "area of the zone [" in shown
     hard = pl.run(
         run.model_copy(update={"interaction": None, "loading": pl.Loading(depth="5 um")}),
@@ -95,26 +94,5 @@ def test_study_with_steep_slopes(tmp_path: Path, quiet: list[str]) -> None:
     vary = '[study.vary]\n"indenter.radius" = ["20 um", "100 um"]\n'
     file.write_text(steep + vary, encoding="utf-8")
     for command in (["run", str(file), "-o", out, *quiet], ["show", out]):
-        done = CliRunner().invoke(app, command)
-        assert done.exit_code == 0, done.output
+        done = call(*command)
         assert done.output.count("of 2 runs, in 1 slopes in contact are beyond the theory") == 1
-
-
-@pytest.mark.parametrize(
-    ("word", "nearest"),
-    [
-        ("dmt", "dugdale"),
-        ("Maugis-Dugdale", "dugdale"),
-        ("maugis", "dugdale"),
-        ("lj93", "exponential"),
-        ("vdw", "exponential"),
-        ("Lennard_Jones", "exponential"),
-        ("griffith", "jkr"),
-    ],
-)
-def test_words_of_the_field_lead_to_what_comes_nearest(word: str, nearest: str) -> None:
-    """What is looked for under another name is named."""
-    with pytest.raises(
-        pl.ConfigError, match=f"not an interaction; what comes nearest is '{nearest}'"
-    ):
-        pl.registry().find("interaction", word)

@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli.app import app
+from tests.command import call
 
 LEGS: list[dict[str, Any]] = [
     {"to": "1 um", "time": "1 s", "num": 4},
@@ -108,12 +107,11 @@ def test_legs_at_the_command_line(tmp_path: Path) -> None:
     file, folder = tmp_path / "legs.toml", tmp_path / "out"
     file.write_text(pl.Run(**RUN).to_toml(), encoding="utf-8")
     command = ["run", str(file), "-o", str(folder), "--set", "loading.depth.2.cycles=1"]
-    assert " 10 " in CliRunner().invoke(app, [*command, "--dry-run"]).output
-    done = CliRunner().invoke(app, command)
-    assert done.exit_code == 0, done.output
+    assert " 10 " in call(*command, "--dry-run").output
+    call(*command)
     result = pl.load(folder / "legs.h5")
     assert result.planned_steps == result.dataset.sizes["step"] == 10
-    shown = CliRunner().invoke(app, ["show", str(folder / "legs.h5")]).output
+    shown = call("show", folder / "legs.h5").output
     head = next(line for line in shown.splitlines() if line.startswith("step"))
     assert head.split()[:5] == ["step", "time", "[s]", "depth", "[µm]"]
 

@@ -10,11 +10,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli.app import app
 from pellicle.runs.lock import locked
+from tests.command import call
 from tests.small_run import run_file
 
 STUDY = run_file("[study.vary]\nkernel.reduced_modulus = ['10 kPa', '20 kPa']")
@@ -53,13 +52,12 @@ def test_second_process_is_refused(text: str, name: str, tmp_path: Path) -> None
     file.write_text(text, encoding="utf-8")
     command = ["run", str(file), "-o", str(out), "-q"]
     with another_process(out, name) as holder:
-        refused = CliRunner().invoke(app, command)
-        assert refused.exit_code == 2
+        refused = call(*command, code=2)
         assert f"{out / name} is locked by another process" in refused.stderr.replace("\n", " ")
         assert [path.name for path in out.iterdir()] == [f".{name}.lock"]
         holder.send_signal(signal.SIGKILL)
         holder.wait()
-        assert CliRunner().invoke(app, command).exit_code == 0
+        call(*command)
     assert not list(out.rglob("*.lock"))
 
 

@@ -9,12 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle.analysis import Oscillation, oscillations
-from pellicle.cli.app import app
 from pellicle.variables import names_of
+from tests.command import call
 from tests.physics.tables_of_runs import coated, half_space, heights, relaxing
 
 K = 3.0 + 0.4j
@@ -223,10 +222,10 @@ def test_sweep_in_one_run_and_in_a_study(tmp_path: Path) -> None:
         np.testing.assert_allclose(table[name], of_legs, rtol=1e-6)
     np.testing.assert_allclose(table["loss_factor"], np.tan(table["phase"]), rtol=1e-9)
     assert table["loss_stiffness"].attrs["units"] == "N/m"
-    shown = CliRunner().invoke(app, ["show", str(tmp_path)]).output
+    shown = call("show", tmp_path).output
     assert "dissipation of a cycle [fJ]" in shown
     result.save(tmp_path / "sweep.h5")
-    lines = CliRunner().invoke(app, ["show", str(tmp_path / "sweep.h5")]).output.splitlines()
+    lines = call("show", tmp_path / "sweep.h5").output.splitlines()
     begin = lines.index("oscillations:")
     assert lines[begin + 1].startswith("oscillation frequency [Hz]  oscillation amplitude [nm]")
     assert [line.split()[0] for line in lines[begin + 2 : begin + 4]] == ["0.5", "2"]

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
-from typer.testing import CliRunner, Result
 
 import pellicle as pl
 from pellicle.batch import Part
-from pellicle.cli.app import app
 from pellicle.runs.lock import locked
 from pellicle.studies.runner import planned
+from tests.command import call
 from tests.part_runs import run_parts
 from tests.small_run import run_file
 
@@ -39,11 +39,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def run(*options: str, code: int = 0) -> Result:
-    """Call ``pellicle run`` and check its exit code."""
-    result = CliRunner().invoke(app, ["run", "s.toml", *options])
-    assert result.exit_code == code, result.output
-    return result
+run = partial(call, "run", "s.toml")
 
 
 def require_same(table: xr.Dataset, other: xr.Dataset) -> None:

@@ -81,6 +81,19 @@ def test_the_work_of_a_loop_is_the_area_between_its_branches() -> None:
     assert errors[1] / errors[2] == pytest.approx(4, rel=0.15)
 
 
+def test_the_error_of_the_pull_off_is_that_of_its_step() -> None:
+    """Steps are counted as they are in the path, those that failed included."""
+    path = jkr_path(101)
+    errors = np.random.default_rng(2).uniform(0.1, 0.2, path["force"].size)
+    converged = np.ones(errors.size, bool)
+    converged[[3, 110]] = False
+    summary = summary_of(force_error=errors, converged=converged)
+    lowest = int(np.argmin(path["force"]))
+    assert lowest > 110
+    assert summary.pull_off_step == lowest + 1
+    assert summary.pull_off_accuracy == errors[lowest]
+
+
 def test_energy_stored_at_the_end_is_not_lost() -> None:
     """Along a branch, between jumps, the work is the change of the energy."""
     path = jkr_path(101)

@@ -13,10 +13,8 @@ from typing import Any
 
 import pytest
 from jsonschema import Draft202012Validator
-from typer.testing import CliRunner
 
 from pellicle import ConfigError, Kernel, PluginError, Run
-from pellicle.cli.app import app
 from pellicle.components.installed import FAMILIES, registry
 from pellicle.config.explain import explanations, words_by_kind
 from pellicle.config.json_schema import model_schema
@@ -25,6 +23,7 @@ from pellicle.plugins.registry import Registry
 from pellicle.plugins.registry import load as load_plugins
 from pellicle_fit.effect import Effect
 from pellicle_fit.files.reader import Reader
+from tests.command import call
 from tests.installed import Installed, entry_point
 
 BUILT_INS = tuple(entry_points(group=GROUP, name="kernel.half_space"))
@@ -168,6 +167,7 @@ from pydantic import Field
 from pellicle.components import Component, FromRegistry
 from pellicle.schema import Model
 from pellicle.units import Quantity
+from tests.command import call
 
 class Artefact(Component):
     """What bends a curve."""
@@ -359,7 +359,7 @@ def test_what_a_component_prints_is_not_in_the_json(
     file = tmp_path / "a.toml"
     file.write_text(SOFT_RUN.replace('"soft", scale', '"half_space", reduced_modulus'))
     words = ["run", str(file), "-o", str(tmp_path), "--json", "--set", "loading.depth=0"]
-    shown = json.loads(CliRunner().invoke(app, words).stdout)
+    shown = json.loads(call(*words).stdout)
     assert shown["converged"] is True
     assert shown["files"] == [str(tmp_path / "a.h5")]
     assert shown["steps"][0]["mean_contact_pressure"] is None

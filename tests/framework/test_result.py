@@ -13,13 +13,12 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli.app import app
 from pellicle.components.installed import registry
 from pellicle.plugins.origins import Origin
 from pellicle.results import storage
+from tests.command import call
 
 CONFIGURATION: dict[str, Any] = {
     "title": "τ₀",
@@ -163,5 +162,5 @@ def test_study_beyond_the_theory(tmp_path: Path) -> None:
             texts = [row["status"] for row in csv.DictReader(file)]
         assert texts[:3] == ["converged"] * 3
         assert message.endswith(f"step 2: {texts[3]}")
-    shown = CliRunner().invoke(app, ["show", str(tmp_path)])
+    shown = call("show", tmp_path)
     assert message in shown.stderr

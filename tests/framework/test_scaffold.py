@@ -4,13 +4,12 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
 from pellicle import ConfigError, StorageError
-from pellicle.cli.app import app
 from pellicle.cli.new import write_plugin
 from pellicle.components.installed import FAMILIES
 from pellicle.plugins.registry import Registry
+from tests.command import call
 
 
 @pytest.mark.parametrize("family", [*FAMILIES, "effect", "reader"])
@@ -108,10 +107,8 @@ def test_folder_that_there_is(tmp_path: Path) -> None:
 def test_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The command says what to do next, and which argument is missing."""
     monkeypatch.chdir(tmp_path)
-    done = CliRunner().invoke(app, ["new", "--plugin", "indenter", "tip"])
-    assert done.exit_code == 0
+    done = call("new", "--plugin", "indenter", "tip")
     assert done.output.startswith("wrote pellicle-tip; next: cd pellicle-tip")
     assert (tmp_path / "pellicle-tip" / "pyproject.toml").is_file()
-    done = CliRunner().invoke(app, ["new", "--plugin", "indenter"])
-    assert done.exit_code == 2
+    done = call("new", "--plugin", "indenter", code=2)
     assert "NAME: is missing; for example: pellicle new --plugin indenter mine" in done.stderr

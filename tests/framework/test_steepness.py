@@ -70,3 +70,16 @@ def test_a_step_between_any_two_rows_counts() -> None:
         contact = np.zeros(grid.shape, dtype=bool)
         contact[row - 1 : row + 1, 7] = True
         assert steepest(heights, contact, grid) == pytest.approx(0.4)
+
+
+def test_slope_at_the_rim_of_a_contact_that_sticks() -> None:
+    """Under a tension τ₀ the surface meets the indenter at √(2w/τ₀), whatever the indenter is."""
+    run = {
+        "grid": {"points": 32, "size": 4.0},
+        "kernel": {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": 1.0},
+        "indenter": {"type": "paraboloid", "radius": 2.0},
+        "interaction": {"type": "jkr", "work_of_adhesion": 0.5 * 0.35**2},
+        "loading": {"depth": [0.03, -0.05]},
+    }
+    with pytest.warns(pl.ConvergenceWarning, match=r"slopes in contact reach 0\.35"):
+        pl.run(run, progress=False)

@@ -14,11 +14,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 import pytest
 import xarray as xr
-from typer.testing import CliRunner
 
 import pellicle as pl
 from pellicle import memory
-from pellicle.cli.app import app
 from pellicle.components import Monitor
 from pellicle.results import StoredRuns, storage
 from pellicle.results.dimensions import with_paths
@@ -28,6 +26,7 @@ from pellicle.studies.table import StudyTable, write
 from pellicle_plugins.executors.execution import Serial
 from pellicle_plugins.executors.processes import Processes
 from tests import small_run
+from tests.command import call
 
 RUN = small_run.RUN | {"title": "Study"}
 
@@ -181,8 +180,7 @@ def test_failing_run_stops_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert np.isfinite(bad["force"].values).tolist() == [True, False, False]
     assert bad["converged"].values.tolist() == [True, False, False]
     assert table.sel({TENSION: [0.0, 1.0]})["converged"].values.all()
-    shown = CliRunner().invoke(app, ["show", str(tmp_path)])
-    assert shown.exit_code == 1
+    shown = call("show", tmp_path, code=1)
     assert "struck by lightning" in shown.stderr
     monkeypatch.undo()
     monkeypatch.setattr(Counting, "solved", [])

@@ -105,15 +105,6 @@ def test_units() -> None:
     assert units == {TENSION: "N/m", "grid.size": "m", "loading.contact_area": "m2"}
 
 
-@pytest.mark.parametrize("name", ["force", "status", "run", "x", "gap", "pi", "sqrt", "a/b", "1st"])
-def test_derived_replaces_no_column(name: str) -> None:
-    """A derived column in place of another one, or without a name, is refused before any run."""
-    with pytest.raises(
-        pl.ConfigError, match=rf"derived\.{name}: '{name}' (has a mean|is not a na)"
-    ):
-        study({TENSION: [0, 1]}, derived={name: "2 * depth"})
-
-
 @pytest.mark.parametrize(
     ("vary", "number"),
     [

@@ -8,10 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli.app import app
+from tests.command import call
 from tests.small_run import run_file
 
 FILE = run_file("""
@@ -28,8 +27,7 @@ def test_derived_columns(tmp_path: Path) -> None:
     """They may name columns, the configuration and each other, and stand wherever runs do."""
     (tmp_path / "s.toml").write_text(FILE, encoding="utf-8")
     folder = tmp_path / "out"
-    done = CliRunner().invoke(app, ["run", str(tmp_path / "s.toml"), "-o", str(folder)])
-    assert done.exit_code == 0, done.output
+    call("run", tmp_path / "s.toml", "-o", folder)
     table = xr.load_dataset(folder / "study.h5", engine="h5netcdf")
     s = 2 * table["kernel.tension"] / 1e4
     wanted = (table["force"] / (s * table["depth"])).values
@@ -42,7 +40,7 @@ def test_derived_columns(tmp_path: Path) -> None:
     )
     assert {float(row["s [m]"]) for row in rows} == {1e-4, 2e-4}
     assert {float(row["missed"]) for row in rows} == {2.0}
-    shown = CliRunner().invoke(app, ["show", str(folder)])
+    shown = call("show", folder)
     head, *lines = [line.split() for line in shown.output.splitlines()[3:]]
     assert head[-7:] == ["s", "[µm]", "pull", "[kPa]", "missed", "status", "file"]
     shown_pull = [float(line[-4]) for line in lines]

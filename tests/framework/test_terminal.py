@@ -9,7 +9,6 @@ import os
 import subprocess
 import sys
 import tomllib
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +17,6 @@ import pytest
 import xarray as xr
 from jsonschema import Draft202012Validator
 from rich.cells import cell_len
-from typer.testing import CliRunner, Result
 
 import pellicle as pl
 from pellicle.cli import new
@@ -31,6 +29,7 @@ from pellicle.runs.validation import CheckedCase
 from pellicle.show.sentences import outcome_of_cases
 from pellicle.show.tables import verdicts
 from pellicle_fit.config import FitConfig
+from tests.command import Cli, call
 
 RUN: dict[str, Any] = {
     "title": "Δ layer",
@@ -60,19 +59,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-Cli = Callable[..., Result]
-
-
 @pytest.fixture
 def cli(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Cli:
-    """Return a function that calls the command line in the folder and checks its exit code."""
+    """Return `call` in the folder."""
     monkeypatch.chdir(folder)
-
-    def call(*arguments: str, code: int = 0, **environment: str) -> Result:
-        result = CliRunner().invoke(app, arguments, env=environment)
-        assert result.exit_code == code, result.output
-        return result
-
     return call
 
 

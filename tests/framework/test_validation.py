@@ -7,11 +7,10 @@ from collections.abc import Callable
 from unittest.mock import Mock
 
 import pytest
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli.app import app
 from pellicle.runs import runner, validation
+from tests.command import call
 from tests.small_run import RUN
 
 
@@ -31,8 +30,7 @@ def test_a_case_that_raises_fails_alone(monkeypatch: pytest.MonkeyPatch) -> None
     assert lost.problem.startswith("KeyError: ")
     assert math.isnan(lost.computed)
     monkeypatch.setattr(validation, "validate", lambda: iter((lost, good)))
-    shown = CliRunner().invoke(app, ["validate"])
-    assert shown.exit_code == 1
+    shown = call("validate", code=1)
     assert "FAILED KeyError: " in shown.stdout
     assert "1 of 2 cases failed" in shown.stdout
 

@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
+from pellicle.runs.terms.adhesion import limit_of
 from tests.adhesive_paths import (
     FORCE,
     JKR,
@@ -133,6 +134,42 @@ def test_pull_off_on_few_cells_is_within_its_error(length: float) -> None:
     assert error > 0.05 * abs(summary["pull_off"])
     assert error < summary["pull_off_accuracy"] < 3 * error
     assert any("at pull-off" in message for message in result.warnings())
+
+
+@pytest.mark.parametrize("length", [0.0, 0.3, 3.0])
+def test_error_of_a_pull_on_few_cells_holds_the_theory(length: float) -> None:
+    """Near the lowest force, on four cells in the radius."""
+    contacts = theory(length).equilibrium(np.linspace(0.3, 3.5, 4000))
+    end = theory(length).instability()
+    depth, stable = float(end.depth) + 0.1, int(np.argmin(contacts.depth))
+    path = solved(24, length, [0.3, depth], size=6 * float(end.contact_radius))
+    force = float(np.interp(depth, contacts.depth[stable:], contacts.force[stable:]))
+    error = abs(path["force"].values[-1] - force)
+    assert error < path["force_error"].values[-1] < 5 * error
+
+
+@pytest.mark.parametrize("bend", [0.0, 0.3, -0.1])
+def test_limit_of_no_width(bend: float) -> None:
+    """A line gives its intercept; of a bent one the error is that of the line that is farther off.
+
+    F = 1 + 0.2 w + bend (w − 1)(w − 1.5): lines through neighbours at w = 0 are 1, and 1 − 3 bend.
+    """
+    widths = np.array([1.0, 1.5, 3.0])
+    forces = 1 + 0.2 * widths + bend * (widths - 1) * (widths - 1.5)
+    limit, off = limit_of([*forces])
+    assert off == pytest.approx(max(0.2, abs(1 - 3 * bend - 1.2)))
+    assert bend or limit == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("across", [0.02, 0.3])
+def test_zone_of_a_line_contact_is_as_wide_on_cells_of_any_shape(across: float) -> None:
+    """The problem is plane, so cells may be as long as they like along the line."""
+    law = {"type": "linear", "work_of_adhesion": 0.2, "strength": 0.5}
+    path = solved(
+        [96, 1], 0.0, [0.3 * across], quantity="force",
+        size=(6.0, across), boundary="periodic", interaction=law,
+    )  # fmt: skip
+    assert path["zone_width"].values[-1] == pytest.approx(0.5, abs=1 / 16)
 
 
 def test_a_step_across_the_lowest_force_does_not_jump() -> None:

@@ -65,13 +65,6 @@ def test_a_depth_on_a_layer_counts_from_first_touch(solver: str) -> None:
     assert float(again["depth"]) == pytest.approx(depths[1], rel=1e-6)
 
 
-def test_an_incompressible_layer_keeps_its_mean_plane() -> None:
-    """With ν = ½ no pressure moves the mean plane, so a depth beyond it is refused as ever."""
-    kernel = layer("bonded_layer", 0.5)
-    with pytest.raises(pl.ConfigError, match="beyond full contact"):
-        step(grid=PERIODIC, kernel=kernel, indenter=ROUGH, loading={"depth": 1e-3})
-
-
 @pytest.mark.parametrize("boundary", ["free", "periodic"])
 def test_a_paraboloid_on_springs(boundary: str, solver: str) -> None:
     """The pressure is k times the overlap in each cell, the force π k R δ² (Johnson 1985, 4.3)."""

@@ -304,33 +304,7 @@ def test_a_first_jump_of_a_solid_that_relaxes() -> None:
         pl.Run(**run | {"loading": {"depth": [8e-6] * 2, "time": [0, 1]}, "gradient": paths})
 
 
-STICKY = {"interaction": {"type": "jkr", "work_of_adhesion": 5e-4}}
 SEEDED = {"indenter": INDENTERS[2]}
-REFUSED: list[tuple[dict[str, Any], list[str], str]] = [
-    ({}, ["kernel.tenison"], "'kernel.tenison' is no real number"),
-    ({}, ["kernel.poissons_ratio"], "is no real number"),
-    ({}, ["kernel"], "no real number"),
-    ({}, ["contact_area"], "areas, pull-off and the like change by whole cells"),
-    ({}, ["pull_off"], "whole cells"),
-    ({}, ["loading.depth"], 'give "heights", or the path'),
-    ({}, ["heights", "heights"], "given twice"),
-    (SEEDED, ["indenter.seed"], "no real number"),
-    (STICKY, ["kernel.tension"], "range that 'jkr' takes"),
-    ({}, [], "a list of 1 or more"),
-]
-
-
-@pytest.mark.parametrize(("change", "paths", "words"), REFUSED, ids=lambda x: str(x)[:30])
-def test_what_is_not_defined_is_refused(
-    change: dict[str, Any], paths: list[str], words: str
-) -> None:
-    """By the configuration itself, which names the entry."""
-    kernel = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 0.1}
-    run = configuration(kernel, "free", INDENTERS[0], LOADINGS[0])
-    with pytest.raises(pl.ConfigError) as caught:
-        pl.Run(**run | change | {"gradient": paths})
-    assert words in str(caught.value)
-    assert "gradient" in caught.value.problems[0].field
 
 
 @cache

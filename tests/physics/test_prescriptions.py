@@ -205,30 +205,3 @@ def test_no_gap_is_full_contact(solver: str) -> None:
     data = _solved(base, solver, gap_volume=0)
     assert data["contact"].all()
     assert data["gap_volume"].item() == pytest.approx(0, abs=1e-18)
-
-
-@pytest.mark.parametrize(
-    ("loading", "words"),
-    [
-        ({"gap_volume": -1e-12}, r"loading\.gap_volume: -1e-12 is not allowed"),
-        ({"base_displacement": "1 um"}, r"loading\.spring_constant: is missing; give it: spring"),
-        (
-            {"base_displacement": "1 um", "spring_constant": "-1 N/m"},
-            r"loading\.spring_constant: '-1 N/m' is not allowed; give a value > 0 N/m",
-        ),
-        ({"depth": "1 um", "spring_constant": 1.0}, r"loading\.spring_constant: is not a field"),
-        ({"base_displacment": "1 um"}, r"base_displacment: .* did you mean 'base_displacement'"),
-        ({"depht": "1 um", "stifness": True}, r"depht: .* 'depth'\?(.|\n)*stifness: .* 'stiffness"),
-    ],
-)
-def test_what_is_refused(loading: dict[str, Any], words: str) -> None:
-    """The message names the field, and what is known."""
-    with pytest.raises(pl.ConfigError, match=words):
-        pl.run({**_base("free", BARE, ROUGH), "loading": loading}, progress=False)
-
-
-def test_punch_has_no_volume_of_its_gap() -> None:
-    """Beside an indenter that does not fill its domain the gap has no end."""
-    base = _base("free", BARE, {"type": "flat_punch", "radius": 2e-4})
-    with pytest.raises(pl.ConfigError, match=r"^loading\.gap_volume: is not defined"):
-        pl.run({**base, "loading": {"gap_volume": 1e-12}}, progress=False)

@@ -200,35 +200,6 @@ def test_liquid_flows_out_of_the_way() -> None:
     np.testing.assert_allclose(data["force"] / data["force"][0], expected, rtol=1e-8, atol=1e-11)
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"loading": {"depth": 1e-6, "time": "1 m"}}, "loading.time"),
-        ({"loading": {"depth": 1e-6, "time": float("nan")}}, "loading.time"),
-        ({"kernel": POWER_LAW, "loading": {"depth": [1e-6] * 2, "time": [0, 1001]}}, "lasts 1001"),
-        (
-            {
-                "kernel": coated(POWER_LAW, 0.05),
-                "loading": {"depth": [1e-6] * 2, "time": [0.0, 1001.0]},
-            },
-            "lasts 1001 s",
-        ),
-        (
-            {
-                "loading": {"depth": 1e-6, "time": 0.0},
-                "interaction": {"type": "jkr", "work_of_adhesion": 0.05},
-            },
-            "interaction.type: 'jkr' takes its range from the cells",
-        ),
-    ],
-)
-def test_refuses(changes: dict[str, Any], message: str) -> None:
-    """A path that is none, or one that cannot be solved, is refused with the name of the field."""
-    with pytest.raises(pl.ConfigError) as caught:
-        pl.Run(**configuration(**changes))
-    assert message in str(caught.value)
-
-
 def test_elastic_solid_takes_no_notice_of_time() -> None:
     """Times with an elastic kernel are listed, and change nothing."""
     timed = solved(kernel=ELASTIC, loading={"depth": [1e-6, 2e-6], "time": [0, 9]})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -146,3 +147,15 @@ def test_limits_are_elastic(fraction: float, time: float, times: list[float], sh
     after = slice(1, None) if share < 1 else slice(None)
     for name in ("force", "contact_area"):
         np.testing.assert_allclose(relaxing[name][after], elastic[name][after], rtol=1e-8)
+
+
+def test_a_resumed_run_remembers_all_its_steps(tmp_path: Path) -> None:
+    """On a periodic domain, wave by wave: it has the bits of a run that was not interrupted."""
+    times = np.array([0.0, 0.1, 0.4, 1.0, 3.0])
+    run = run_of(24, times, np.array([0.1, 0.3, 0.2, 0.4, 0.4]))
+    run |= {"title": "skin", "outputs": [], "grid": run["grid"] | {"boundary": "periodic"}}
+    whole = pl.run(run, progress=False).dataset
+    pl.Result(whole.isel(step=slice(0, 3))).save(tmp_path / "skin.h5")
+    resumed = pl.run(run, directory=tmp_path, progress=False).dataset
+    for name in ("force", "pressure", "displacement"):
+        np.testing.assert_array_equal(resumed[name], whole[name], err_msg=name)

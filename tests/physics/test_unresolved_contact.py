@@ -87,6 +87,15 @@ def test_a_free_grid_one_cell_wide_has_an_edge(points: Any, indenter: dict[str, 
     assert result.dataset["status_code"].item() == code
 
 
+@pytest.mark.parametrize(("x", "y"), [(-0.45, 0.0), (0.45, 0.0), (0.0, -0.45), (0.0, 0.45)])
+def test_each_edge_of_a_free_domain_is_one(x: float, y: float) -> None:
+    """A contact that leaves by one edge alone is told; turned, the problem is the same."""
+    shifted = {"type": "shifted", "x": x * SIZE, "y": y * SIZE, "part": paraboloid(RADIUS)}
+    with pytest.warns(pl.ConvergenceWarning, match="reaches the edge"):
+        result = pressed(indenter=shifted, depth=2e-5)
+    assert result.dataset["status_code"].item() == "CONTACT_AT_EDGE"
+
+
 def test_a_zone_that_reaches_the_edge_has_words_of_its_own() -> None:
     """Without contact it is the zone that needs room; with room the same is said of neither."""
     run: dict[str, Any] = {

@@ -40,14 +40,6 @@ def test_hertz_force_area_and_pressure(solver: str) -> None:
     assert np.abs(step["pressure"].values - expected)[inner].max() < 1e-3 * true.peak_pressure
 
 
-def test_a_given_hertz_force_gives_the_hertz_depth(solver: str) -> None:
-    """Load control finds the depth that belongs to the force."""
-    true = sphere(1.0, 1.0, depth=0.01)
-    step = _step(solver, 64, 3 * true.semi_x, paraboloid(), force=true.force)
-    assert float(step["depth"]) == pytest.approx(0.01, rel=1e-3)
-    assert float(step["force"]) == pytest.approx(true.force, rel=1e-12)
-
-
 def test_hertz_ellipse_on_rectangular_cells(solver: str) -> None:
     """A quadric on 96 × 64 cells of aspect ratio 3:4 gives Hertz's elliptic force and area."""
     true = ellipse(2.0, 1.0, 1.0, depth=0.01)

@@ -39,8 +39,8 @@ def plot(
 
     from .results import written
 
-    chosen = [str(format_) for format_ in formats or [Format.PNG]]
-    output = registry().make(Output, {"type": "figures", "formats": chosen})
+    names = [str(format_) for format_ in formats or [Format.PNG]]
+    output = registry().make(Output, {"type": "figures", "formats": names})
     if is_table(results):
         table, folder = read(results)
         runs, name = StoredRuns.of_study(table, folder), "study"
@@ -48,7 +48,7 @@ def plot(
         file = file_of_run(results)
         with written(file) as of_command:
             if of_command:
-                for path in of_command.plot(directory or file.parent, chosen):
+                for path in of_command.plot(directory or file.parent, names):
                     echo(f"wrote {path}")
                 return
         runs, folder, name = StoredRuns.of_run(load(file).dataset), file.parent, file.stem

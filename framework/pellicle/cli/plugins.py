@@ -39,14 +39,14 @@ def plugins(
         raise ConfigError("is for --check alone", "NAME")
     contents = registry()
     owners = {name: [*map(Origin.of, entries)] for name, entries in commands().items()}
-    made = {name: typer_command(name) for name in owners}
+    loaded_commands = {name: typer_command(name) for name in owners}
     rows = [
-        (family, type_, one.origin.distribution, one.origin.version, one.summary)
+        (family, type_, entry.origin.distribution, entry.origin.version, entry.summary)
         for family, members in contents.components.items()
-        for type_, one in members.items()
+        for type_, entry in members.items()
     ] + [
         ("command", name, of.distribution, of.version, (command.help or "").partition("\n")[0])
-        for (name, (of, *_)), command in zip(owners.items(), made.values(), strict=True)
+        for (name, (of, *_)), command in zip(owners.items(), loaded_commands.values(), strict=True)
         if not isinstance(command, Broken)
     ]
     clashes: dict[tuple[str, str], Sequence[Origin]] = {
@@ -55,7 +55,7 @@ def plugins(
     }
     failed = {
         loaded.origin: loaded
-        for name, loaded in (*file_models().items(), *made.items())
+        for name, loaded in (*file_models().items(), *loaded_commands.items())
         if isinstance(loaded, Broken) and ("command", name) not in clashes
     }
     unusable = [
@@ -86,14 +86,14 @@ def _check(name: str | None, json: bool) -> None:
     from pellicle.components.installed import registry
     from pellicle.testing.component import verdict_on_examples
 
-    rows, kept = [], True
+    rows, all_hold = [], True
     for family, members in registry().components.items():
         for type_, registered in members.items():
             origin = registered.origin
             names = {family, type_, f"{family}.{type_}", origin.distribution}
             if name in names or (name is None and not origin.is_own):
                 holds, verdict = verdict_on_examples(registered)
-                kept = kept and holds
+                all_hold = all_hold and holds
                 rows.append((family, type_, origin.distribution, verdict))
     if name is not None and not rows:
         raise ConfigError(
@@ -106,5 +106,5 @@ def _check(name: str | None, json: bool) -> None:
         print_json(table.records)
     else:
         print_table(table)
-    if not kept:
+    if not all_hold:
         raise typer.Exit(NOT_CONVERGED)

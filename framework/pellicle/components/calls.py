@@ -222,9 +222,9 @@ def _checked_state(solver: Solver, problem: Problem, value: object) -> State:
             "pellicle.Solution"
         )
     for member, kind in {"state": State, "iterations": Integral, "stop": Stop}.items():
-        if not isinstance(found := getattr(value, member), kind):
+        if not isinstance(part := getattr(value, member), kind):
             raise PluginError(
-                f"{component_name(solver)}: solve() returned a Solution of {member} {shown(found)}"
+                f"{component_name(solver)}: solve() returned a Solution of {member} {shown(part)}"
                 "; it needs a pellicle.State, such as State.of_pressure(pressure), a whole "
                 "number of iterations and a pellicle.Stop"
             )

@@ -30,9 +30,9 @@ class Coordinate(NamedTuple):
     """Attributes of the coordinate: its unit and meaning."""
 
 
-def coordinate(key: str, given: Values, runs: Sequence[Run]) -> Coordinate:
-    """Return the values that ``runs`` hold of the parameter ``key``, ``given`` by the user."""
-    values = [_single(get(run, key), value) for run, value in zip(runs, given, strict=True)]
+def coordinate(key: str, inputs: Values, runs: Sequence[Run]) -> Coordinate:
+    """Return the values that ``runs`` hold of the parameter ``key``, of the user's ``inputs``."""
+    values = [_single(get(run, key), value) for run, value in zip(runs, inputs, strict=True)]
     rows = {row.name: row for row in field_rows(Run.model_fields, runs[0].to_table())}
     row = rows.get(key.removesuffix(".type"))
     words = (row and row.words) or words_of_name(key)
@@ -46,10 +46,10 @@ def coordinate(key: str, given: Values, runs: Sequence[Run]) -> Coordinate:
         return Coordinate(np.array(values), attributes)
     texts = [
         value if isinstance(value, str) else short(original)
-        for value, original in zip(values, given, strict=True)
+        for value, original in zip(values, inputs, strict=True)
     ]
     if len(set(texts)) < len(texts):
-        texts = [json.dumps(as_json(*pair)) for pair in zip(given, values, strict=True)]
+        texts = [json.dumps(as_json(*pair)) for pair in zip(inputs, values, strict=True)]
     shown = _words_of_values(key, values, runs)
     if shown != texts:
         by_value = dict(zip(texts, shown, strict=True))
@@ -98,35 +98,35 @@ def _text(value: Any) -> str:
     return value if isinstance(value, str) else readable(value, digits=DIGITS)
 
 
-def as_json(given: Any, value: Any, *, portable: bool = False) -> Any:
-    """Return a ``given`` value in a form that JSON can hold.
+def as_json(entry: Any, value: Any, *, portable: bool = False) -> Any:
+    """Return an ``entry`` of the user in a form that JSON can hold.
 
-    ``value`` is the validated value of the run, whose absolute paths replace the given ones unless
-    the text is to be ``portable``.
+    ``value`` is the validated value of the run, whose absolute paths replace those of the entry
+    unless the text is to be ``portable``.
     """
-    if isinstance(given, Model):
+    if isinstance(entry, Model):
         context = PORTABLE if portable else None
-        return given.model_dump(mode="json", exclude_none=True, context=context)
+        return entry.model_dump(mode="json", exclude_none=True, context=context)
     if isinstance(value, Path):
-        return str(given if portable else value)
-    if isinstance(given, Mapping):
-        return {n: as_json(inner, get(value, n), portable=portable) for n, inner in given.items()}
-    if isinstance(given, (list, tuple)):
+        return str(entry if portable else value)
+    if isinstance(entry, Mapping):
+        return {n: as_json(inner, get(value, n), portable=portable) for n, inner in entry.items()}
+    if isinstance(entry, (list, tuple)):
         return [
             as_json(inner, get(value, str(index)), portable=portable)
-            for index, inner in enumerate(given)
+            for index, inner in enumerate(entry)
         ]
-    if hasattr(given, "tolist"):
-        return given.tolist()
-    return given if isinstance(given, (str, int, float, bool)) else str(given)
+    if hasattr(entry, "tolist"):
+        return entry.tolist()
+    return entry if isinstance(entry, (str, int, float, bool)) else str(entry)
 
 
-def _single(value: Any, given: Any) -> Any:
+def _single(value: Any, entry: Any) -> Any:
     """Return one of several equal values if the user gave one, as for a size or a depth."""
     several = isinstance(value, tuple) and value and len(set(map(str, value))) == 1
-    if several and not isinstance(given, (list, tuple, Mapping)):
+    if several and not isinstance(entry, (list, tuple, Mapping)):
         return value[0]
-    return str(given) if isinstance(value, Path) else value
+    return str(entry) if isinstance(value, Path) else value
 
 
 def short(value: object) -> str:

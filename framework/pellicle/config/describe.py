@@ -97,11 +97,11 @@ def field_rows(
     explanation of their own, grid and loading, are one field. Names begin with the ``path`` of the
     table, words end with those of its ``owner``.
     """
-    given = table or {}
-    for key in (*given, *(name for name in fields if name not in given)):
+    values = table or {}
+    for key in (*values, *(name for name in fields if name not in values)):
         if key == "type":
             continue
-        info, value = fields.get(key), given.get(key)
+        info, value = fields.get(key), values.get(key)
         noun = field_words(key, info)
         meaning = (info.description if info else None) or ""
         quantity = quantity_of(info) if info else None

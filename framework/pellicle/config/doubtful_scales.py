@@ -110,9 +110,9 @@ def _values(run: Run) -> list[tuple[str, float, str]]:
 
 
 def _doubt(path: str, value: float, unit: str, reason: str = "") -> tuple[str, str]:
-    given, usual = f"{value:g}", str(Quantity(unit).example).partition(" ")[2]
+    number, usual = f"{value:g}", str(Quantity(unit).example).partition(" ")[2]
     because = f", {reason}" if reason else ""
     return path, (
-        f"{path} is {given} {printed(unit)}{because}; a number without a unit is in SI: "
-        f"give one, such as '{given} {usual}', if that is not meant"
+        f"{path} is {number} {printed(unit)}{because}; a number without a unit is in SI: "
+        f"give one, such as '{number} {usual}', if that is not meant"
     )

@@ -67,11 +67,11 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
         types = [FieldRow(t, "", t, "", entry.summary) for t, entry in families[family].items()]
         meaning = _documentation(registry().families[family])
         return [Explanation(family, "family", "", meaning, types, "")]
-    given, _, type_ = name.rpartition(".")
+    family_name, _, type_ = name.rpartition(".")
     matches = [
         members[type_]
         for family, members in families.items()
-        if type_ in members and given in ("", family, f"{family}s")
+        if type_ in members and family_name in ("", family, f"{family}s")
     ]
     if not matches:
         for broken in registry().broken:

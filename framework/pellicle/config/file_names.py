@@ -50,9 +50,9 @@ def _suffixes(output: Output) -> list[str]:
 
 def _shared(some: Iterable[str], others: Sequence[str]) -> str:
     """Return a suffix that both contain, whatever the case, as some file systems; else ""."""
-    for one, other in product(some, others):
-        if fnmatchcase(one.casefold(), other.casefold()):
-            return one
-        if fnmatchcase(other.casefold(), one.casefold()):
-            return other
+    for suffix, taken_suffix in product(some, others):
+        if fnmatchcase(suffix.casefold(), taken_suffix.casefold()):
+            return suffix
+        if fnmatchcase(taken_suffix.casefold(), suffix.casefold()):
+            return taken_suffix
     return ""

@@ -23,12 +23,12 @@ _MAY = 'give "heights", or the path of a number of the kernel or the indenter, a
 def quantities_of(run: Run) -> dict[str, Quantity]:
     """Return the quantity of each number of kernel and indenter by its path, and of heights."""
     parts = {"kernel": run.kernel, "indenter": run.indenter}
-    found = {
+    quantities = {
         path: (info and quantity_of(info)) or Quantity("1")
         for path, value, info in walk(parts)
         if isinstance(value, float)
     }
-    return found | {HEIGHTS: Quantity("m")}
+    return quantities | {HEIGHTS: Quantity("m")}
 
 
 def refuse_undefined(run: Run, path: str, before: Iterable[str] = ()) -> None:

@@ -225,8 +225,8 @@ class Study(FromFile):
             key: as_json(value, get(first, key), portable=portable)
             for key, value in self.run.items()
         }
-        given = {name: value for name, value in study.items() if value}
-        return {**run, "study": given}
+        axes_and_options = {name: value for name, value in study.items() if value}
+        return {**run, "study": axes_and_options}
 
     def _check_axes(self) -> None:
         if not self._parameters:
@@ -238,9 +238,9 @@ class Study(FromFile):
             with problems_within("vary"):
                 # Raises for one that is too long, which the message of a run would begin with.
                 replaced({}, parameter, None)
-        for first, other in itertools.combinations(self._parameters, 2):
-            if first == other or first.startswith(f"{other}.") or other.startswith(f"{first}."):
-                short, long = sorted((first, other), key=len)
+        for first, second in itertools.combinations(self._parameters, 2):
+            if first == second or first.startswith(f"{second}.") or second.startswith(f"{first}."):
+                short, long = sorted((first, second), key=len)
                 raise ConfigError(
                     f"would override the axis {short}, which sets the same value; leave one out",
                     f"vary.{long}",

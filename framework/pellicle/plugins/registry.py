@@ -85,9 +85,10 @@ class Registry:
         article = "an" if family[0] in "aeiou" else "a"
         word = re.sub("[^a-z0-9]", "", str(type_).lower())
         near = [name for name, known in types.items() if word in known.component.also]
-        lead = f"what comes nearest is {' or '.join(map(repr, near))}. " if near else ""
+        synonyms = f"what comes nearest is {' or '.join(map(repr, near))}. " if near else ""
         raise ConfigError(
-            f"{shown(type_)} is not {article} {family}; {lead}{nearest(type_, types)}{hint}", "type"
+            f"{shown(type_)} is not {article} {family}; {synonyms}{nearest(type_, types)}{hint}",
+            "type",
         )
 
     def versions(self, used: Collection[type[Component]]) -> dict[str, str]:
@@ -105,7 +106,7 @@ class Registry:
         """Return the version of pellicle, of the owners of components, and of libraries."""
         numbers = {name: _version(name) for name in ("pellicle", "numpy", "scipy")}
         numbers |= self.versions(used)
-        for name in sorted({*others, *(name for one in used for name in one.libraries)}):
+        for name in sorted({*others, *(name for kind in used for name in kind.libraries)}):
             # A worker may receive data that a library has read without having the library itself.
             with suppress(PackageNotFoundError):
                 numbers[name] = _version(name)

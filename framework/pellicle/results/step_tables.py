@@ -136,15 +136,15 @@ def path(data: Dataset, *, si: bool = False, whole: bool = True) -> list[Table]:
 
 def oscillations(data: Dataset) -> list[Table]:
     """Return the numbers of each oscillation on the path, where a leg oscillates."""
-    found = oscillations_of(data)
+    responses = oscillations_of(data)
     columns = [
         Column(
             variable.words,
-            [getattr(oscillation, variable.name) for oscillation in found],
+            [getattr(oscillation, variable.name) for oscillation in responses],
             variable.unit,
             variable.meaning,
         )
         for variable in map(VARIABLES.__getitem__, names_of("oscillation"))
     ]
     caption = "Response over the last whole cycle of each oscillation."
-    return [Table(columns, caption)] if found else []
+    return [Table(columns, caption)] if responses else []

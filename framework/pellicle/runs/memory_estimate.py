@@ -40,12 +40,12 @@ def memory_of(run: Run) -> float:
     operator = _LINE if grid.points[1] == 1 else _OPERATOR[grid.boundary]
     iterating = 0.0 if run.load else solver.arrays(grid) + (_STICKS if run.interaction else 0.0)
     history = history_arrays(run)
-    kept = (_STEP + _SERIALISED) * (run.steps - 1)
+    records = (_STEP + _SERIALISED) * (run.steps - 1)
     if run.load and run.load.varied:
         # The tractions of all steps but the first, which has the place of an indenter.
-        kept += run.steps - 1
+        records += run.steps - 1
     for path in run.gradient or ():
         # Two fields of each step, or the derivative of the operator.
-        kept += 4.0 * run.steps if path == HEIGHTS else operator
+        records += 4.0 * run.steps if path == HEIGHTS else operator
     heap = _HEAP if 8 * cells < _GIVEN_BACK else 0
-    return _FIXED + 8 * cells * (operator + iterating + history + kept + heap)
+    return _FIXED + 8 * cells * (operator + iterating + history + records + heap)

@@ -78,8 +78,8 @@ def _translated(model: type[BaseModel], detail: ErrorDetails, field: str) -> Ite
                 f"{shown(detail['input'])} is not allowed; {nearest(detail['input'], allowed)}"
             )
         case _:
-            wanted = _WANTED.get(detail["type"], "").format(**detail.get("ctx", {}))
-            remedy = f"give {wanted}" if wanted else detail["msg"].replace("Input", "it")
+            expected = _WANTED.get(detail["type"], "").format(**detail.get("ctx", {}))
+            remedy = f"give {expected}" if expected else detail["msg"].replace("Input", "it")
             message = f"{shown(detail['input'])} is not allowed; {remedy}"
             if description := _description(model, field):
                 message += f" ({description})"

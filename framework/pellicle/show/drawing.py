@@ -325,7 +325,7 @@ def marks_of(
             continue
         pixels = axes.transData.transform(points)
         shares = figure.transFigure.inverted().transform(pixels)
-        for found, step in zip(marks, steps, strict=True):
+        for marks_of_step, step in zip(marks, steps, strict=True):
             here = shares[(series.steps == step) & np.isfinite(shares).all(axis=1)]
-            found += [(float(left), float(1 - bottom)) for left, bottom in here]
+            marks_of_step += [(float(left), float(1 - bottom)) for left, bottom in here]
     return marks

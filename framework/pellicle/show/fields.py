@@ -86,10 +86,10 @@ def _rim(line: Dataset, along: str) -> float:
         float(np.hypot(np.cos(turned) / major, np.sin(turned) / minor)) ** -1
         for turned in (angle, angle - np.pi / 2)
     )
-    (other,) = {"x", "y"} - {along}
+    (axis_across,) = {"x", "y"} - {along}
     areas = [name for name in line.data_vars if str(name).startswith(CORRECTED_AREA)]
     scale = np.sqrt(float(line[areas[0]]) / counted) if areas else 1.0
-    return float(scale * half * np.sqrt(max(1.0 - (float(line[other]) / across) ** 2, 0.0)))
+    return float(scale * half * np.sqrt(max(1.0 - (float(line[axis_across]) / across) ** 2, 0.0)))
 
 
 def up_to_rim(x: Array, pressure: Array, contact: Mask, rim: float) -> tuple[Array, Array]:

@@ -348,10 +348,10 @@ def read(path: Path) -> tuple[xr.Dataset, Path]:
     A kill may leave finished steps out of the table; they are read from the files of the runs.
     """
     whole = path / "study.h5" if is_folder(path) else path
-    found = storage.table(whole)
+    table = storage.table(whole)
     with sound(whole):
-        check(found)
-        rows = with_paths(found)
+        check(table)
+        rows = with_paths(table)
     if Status.NOT_RUN.name in rows["status_code"].values:
         # Where a file that the study names is gone, the table is shown as it was left.
         with suppress(PellicleError):

@@ -52,11 +52,11 @@ class Span:
         _, sizes, rows = np.linalg.svd(samples, full_matrices=False)
         span = rows[: np.count_nonzero(sizes > _ACCURACY * sizes[0])]
         _, _, order = qr(span, mode="economic", pivoting=True)
-        chosen = np.sort(order[: len(span)])
-        self.waves = q[chosen]
+        pivots = np.sort(order[: len(span)])
+        self.waves = q[pivots]
         """q_b [rad/m]."""
-        between = np.linalg.solve(span[:, chosen], span)
-        self.error = float(np.abs(samples[:, chosen] @ between - samples).max())
+        between = np.linalg.solve(span[:, pivots], span)
+        self.error = float(np.abs(samples[:, pivots] @ between - samples).max())
         """Largest error of a sample, over G(q)."""
         self.functions = [make_interp_spline(np.log(q), line, k=5) for line in between]
 
@@ -95,8 +95,8 @@ class FewWaves:
         """Take the ``operator`` of the ``kernel`` G(q)."""
         kinds = [_Weighted(kernel, function) for function in span.functions]
         self._operators = [operator, *(operator_of(kind, operator.grid) for kind in kinds)]
-        for each in self._operators:
-            each.on = lru_cache(each.on)
+        for weighted in self._operators:
+            weighted.on = lru_cache(weighted.on)
         self._factors = 2 * np.array([kind.largest for kind in kinds])
 
     def interpolated(self, values: Array) -> Operator:

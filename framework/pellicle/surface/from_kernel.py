@@ -150,7 +150,7 @@ def _periodic(kernel: HasSymbol, grid: Grid) -> Operator:
             "positive or infinite; check the parameters, or the formula if the kernel is yours",
             "kernel",
         )
-    return Operator(grid, values, grid.shape, symbol, lambda other: _periodic(kernel, other))
+    return Operator(grid, values, grid.shape, symbol, lambda new_grid: _periodic(kernel, new_grid))
 
 
 def _free(kernel: HasSymbol, grid: Grid, form: HasClosedForm | None) -> Operator:
@@ -191,7 +191,7 @@ def _free(kernel: HasSymbol, grid: Grid, form: HasClosedForm | None) -> Operator
         wrapped[px - nx + 1 :, :ny] = cells[:0:-1]
         wrapped[:, py - ny + 1 :] = wrapped[:, ny - 1 : 0 : -1]
         values = scipy.fft.rfft2(wrapped).real.copy()
-    return Operator(grid, values, (px, py), symbol, lambda other: _free(kernel, other, form))
+    return Operator(grid, values, (px, py), symbol, lambda new_grid: _free(kernel, new_grid, form))
 
 
 def _table(kernel: HasSymbol, symbol: Symbol, grid: Grid, table: Tabulated | None) -> Tabulated:
@@ -239,15 +239,15 @@ def displacement(pressure: Array, *, kernel: HasSymbol, grid: Grid) -> Array:
         )
     if not isinstance(grid, Grid):
         raise ConfigError(f"{shown(grid)} is not a grid; make one with pellicle.Grid(…)", "grid")
-    given = np.asarray(pressure)
-    if given.shape != grid.shape or given.dtype.kind not in "fiu":
+    tractions = np.asarray(pressure)
+    if tractions.shape != grid.shape or tractions.dtype.kind not in "fiu":
         raise ConfigError(
-            f"is of shape {given.shape} and type {given.dtype}; give a real array of shape "
+            f"is of shape {tractions.shape} and type {tractions.dtype}; give a real array of shape "
             f"{grid.shape}, the grid's",
             "pressure",
         )
-    if not np.isfinite(given).all():
+    if not np.isfinite(tractions).all():
         raise ConfigError("holds NaN or infinite values; give finite ones in Pa", "pressure")
     operator = operator_of(kernel, grid)
     warn_of_cells(partial(along_axes, operator.symbol), grid)
-    return operator(given.astype(np.float64))
+    return operator(tractions.astype(np.float64))

@@ -150,8 +150,8 @@ def _wavenumbers(shortest: float, longest: float) -> str:
 
 def _without_power_law(x: Array, g: Array) -> tuple[_PowerLaw, Array]:
     """Return the power law to be subtracted, that of G(q) at large q, and the remainder."""
-    one = round(1 / _STEP)
-    low, high = np.log(g[0] / g[one]), np.log(g[-1 - one] / g[-1])
+    unit_step = round(1 / _STEP)
+    low, high = np.log(g[0] / g[unit_step]), np.log(g[-1 - unit_step] / g[-1])
     if high < -_SAME_POWER / 10:
         raise ConfigError(
             f"compliance(q) still grows at q = {np.exp(x[-1]):.3g} rad/m, as q^{-high:.3g}; at "
@@ -175,11 +175,11 @@ def _transform(x: Array, g: Array, f: Array, reach: Array) -> tuple[CubicSpline,
     from scipy.interpolate import CubicSpline
 
     step = (x[-1] - x[0]) / (x.size - 1)
-    one = round(1 / step)
+    unit_step = round(1 / step)
     # The remainder without a power law may vanish, at small q or everywhere.
-    first = min(int(np.argmax(f != 0)), x.size - 1 - one)
+    first = min(int(np.argmax(f != 0)), x.size - 1 - unit_step)
     x, g, f = x[first:], g[first:], f[first:]
-    power = float(np.log(np.abs(f[0] / f[one]))) if f[0] and f[one] else 0.0
+    power = float(np.log(np.abs(f[0] / f[unit_step]))) if f[0] and f[unit_step] else 0.0
     if power > _STEEPEST:
         raise ConfigError(
             f"'free' needs a compliance that grows no faster than q^-{_STEEPEST} towards q = 0, or "
@@ -214,10 +214,10 @@ def _weight(x: Array, g: Array, f: Array, power: float, reach: Array) -> float:
     value at r scales with the largest g at q > 1/r.
     """
     nonzero, inside = f != 0, (x > -reach[1]) & (x < -reach[0])
-    wanted = np.log(np.maximum.accumulate(g[::-1])[::-1][inside])
+    log_g = np.log(np.maximum.accumulate(g[::-1])[::-1][inside])
     part = np.log(np.abs(f[nonzero]))
 
     def decades(b: float) -> float:
-        return float((b * x[nonzero] + part).max(initial=-np.inf) - (b * x[inside] + wanted).min())
+        return float((b * x[nonzero] + part).max(initial=-np.inf) - (b * x[inside] + log_g).min())
 
     return min((power + share * (2 - power) for share in (0.25, 0.5, 0.75)), key=decades)

@@ -75,7 +75,7 @@ def _require_squares(
 ) -> dict[int, Any]:
     """Require each task once, itself, and with its square but for one; return the outcomes."""
     for task in tasks:
-        outcomes = [outcome for one, outcome in pairs if one is task]
+        outcomes = [outcome for yielded, outcome in pairs if yielded is task]
         times, square = len(outcomes), task.number**2
         require(times == 1, f"{task.name} of {len(tasks)} is yielded {times} times as it was given")
         right = task.number == but or outcomes[0] == square
@@ -151,7 +151,7 @@ def messages_are_reported(executor: Executor) -> None:
     caller = threading.get_ident(), os.getpid()
     require(observed.callers <= {caller}, "report is called in another thread")
     for task, _ in observed.messages:
-        passed = any(task is one for one in observed.tasks)
+        passed = any(task is known_task for known_task in observed.tasks)
         require(passed, f"report is called with {task!r}, not one of the tasks")
     for task in observed.tasks:
         sent = [("begun", task.number), ("nearly done", task.number)]

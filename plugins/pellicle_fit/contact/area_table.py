@@ -82,10 +82,10 @@ class Table:
         self.coefficients = np.zeros((2, 4, _ROWS, nodes - 1))
         self.known = np.zeros(_ROWS, dtype=bool)
 
-    def _fill(self, wanted: NDArray[np.intp]) -> None:
+    def _fill(self, numbers: NDArray[np.intp]) -> None:
         from scipy.interpolate import CubicSpline
 
-        for i in {*wanted[~self.known[wanted]].tolist()}:
+        for i in {*numbers[~self.known[numbers]].tolist()}:
             values, rates = self.row(self.spacing * i, self.depth)
             both = np.stack([values, self.spacing * rates], axis=1) / self.depth[:, None] ** 1.5
             self.coefficients[:, :, i] = np.moveaxis(CubicSpline(self.log, both).c, 2, 0)

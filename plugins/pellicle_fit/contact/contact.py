@@ -161,8 +161,8 @@ class Contact:
         area, by_depth = self.area.slopes(depth, self.length)
         if np.any(self.length):
             lengths = np.broadcast_to(np.maximum(self.length, _LEAST * self.deepest), depth.shape)
-            found = punch_radius(by_depth.ravel(), lengths.ravel())
-            radius, slope = (part.reshape(depth.shape) for part in found)
+            solution = punch_radius(by_depth.ravel(), lengths.ravel())
+            radius, slope = (part.reshape(depth.shape) for part in solution)
         else:
             radius, slope = by_depth / 2, np.full_like(by_depth, 2.0)
         return self.modulus * area, self.modulus * by_depth, radius, self.modulus * slope

@@ -186,10 +186,10 @@ class Curve:
         long path may touch in its last hundredth.  In a hold they are even in the logarithm of the
         time, too, as solids relax.
         """
-        found = []
+        groups = []
         for rows in self.passes:
             if rows.size <= bins:
-                found += [*rows[:, None]]
+                groups += [*rows[:, None]]
                 continue
             inward = rows[::-1] if self.moves_out[rows[0]] else rows
             force, way = self.smoothed[inward], np.maximum.accumulate(self.position[inward])
@@ -200,10 +200,10 @@ class Curve:
                 resting = np.cumsum(self.rests[inward])
                 along, parts = along + np.log1p(resting) / np.log1p(resting[-1]), 3
             ends = np.unique(np.searchsorted(along, np.arange(1, bins) * (parts / bins)))
-            found += sorted(
+            groups += sorted(
                 (np.sort(part) for part in np.split(inward, ends) if part.size), key=min
             )
-        return found
+        return groups
 
     def binned(self, bins: int) -> Curve:
         """Return means of neighbouring rows, at most ``bins`` for each pass.

@@ -46,6 +46,6 @@ class RowSplines:
         u = (at - x.take(index)) / step
         first, last = y.take(index), y.take(index + 1)
         bend = step * slope.take(index) - (last - first)
-        other = (last - first) - step * slope.take(index + 1)
-        bent = u * (1 - u) * ((1 - u) * bend + u * other)
+        end_slope = (last - first) - step * slope.take(index + 1)
+        bent = u * (1 - u) * ((1 - u) * bend + u * end_slope)
         return np.asarray(first + u * (last - first) + bent)

@@ -71,14 +71,14 @@ class Adhesion(Responds):
         deepest = np.maximum(np.max(path, axis=-1, keepdims=True), _SHALLOW * curve.span)
         position, force = (np.atleast_2d(x) for x in self._branch(contact, deepest, softness))
         end = position[:, :1]
-        root, one = np.sqrt(np.maximum(position - end, 0.0)), np.ones(end.shape, dtype=bool)
+        root, holds = np.sqrt(np.maximum(position - end, 0.0)), np.ones(end.shape, dtype=bool)
         grows = root[:, 1:] > np.maximum.accumulate(root, axis=1)[:, :-1] + _SAME * root[:, -1:]
-        ahead = back = _splines(root, force, np.hstack([one, grows]))
+        ahead = back = _splines(root, force, np.hstack([holds, grows]))
         if np.any(np.diff(root) < 0):
             # The edge of a worn tip: what is pulled off it jumps to it from a wider contact.
             wider = np.minimum.accumulate(root[:, ::-1], axis=1)[:, ::-1]
             grows = root[:, :-1] < wider[:, 1:] - _SAME * root[:, -1:]
-            back = _splines(root, force, np.hstack([grows, one]))
+            back = _splines(root, force, np.hstack([grows, holds]))
         ramp, jumping = _RAMP * curve.span / curve.passes[0].size, _jumps(curve)
 
         def response(depth: Array) -> Array:
@@ -150,11 +150,11 @@ def _splines(root: Array, force: Array, rising: Mask) -> Callable[[Array], Array
     if rising.all():
         return RowSplines(root, force)
     rows = zip(root, force, rising, strict=True)
-    each = [CubicSpline(way[some], of_way[some]) for way, of_way, some in rows]
+    cubic_splines = [CubicSpline(way[some], of_way[some]) for way, of_way, some in rows]
 
     def splines(at: Array) -> Array:
-        rows = np.broadcast_to(at, (len(each), at.shape[-1]))
-        return np.array([spline(row) for spline, row in zip(each, rows, strict=True)])
+        rows = np.broadcast_to(at, (len(cubic_splines), at.shape[-1]))
+        return np.array([spline(row) for spline, row in zip(cubic_splines, rows, strict=True)])
 
     return splines
 

@@ -51,16 +51,16 @@ class Layer(Bends, title="a thin layer"):
             steps, values = [], []
             for h, s in zip(*(pair.ravel().tolist() for pair in pairs), strict=True):
                 # Trials beside each other, as for derivatives, differ to first order.
-                near = (one for one in known if abs(one[0] - h) < _NEAR * h)
-                near = (one for one in near if abs(one[1] - s) < _NEAR * (s + _NEAR * h))
-                if (one := next(near, None)) is None:
+                near = (entry for entry in known if abs(entry[0] - h) < _NEAR * h)
+                near = (entry for entry in near if abs(entry[1] - s) < _NEAR * (s + _NEAR * h))
+                if (entry := next(near, None)) is None:
                     step = np.sqrt(min(contact.deepest, float(limit(h)))) / _STEPS
                     depths = (step * np.arange(_STEPS + 1)) ** 2
                     of = body.layer_force_curve(depths, s, h, ratio)
                     checked_area(body, of, depths)
-                    one = h, s, step, of
-                    known.append(one)
-                h_, s_, step, of = one
+                    entry = h, s, step, of
+                    known.append(entry)
+                h_, s_, step, of = entry
                 steps.append(step)
                 values.append(of.force + of.by_thickness * (h - h_) + of.by_length * (s - s_))
             return np.reshape(steps, (-1, 1)), cubics(np.array(values))

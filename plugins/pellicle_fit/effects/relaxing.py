@@ -123,13 +123,13 @@ class Relaxing(Responds):
         first = {key: row for row, key in reversed([*enumerate(keys)])}
         rows = np.array([*first.values()])
         numbers = {key: number for number, key in enumerate(first)}
-        found = []
+        courses = []
         # Of another contact rows belong together, each with its own.
         for part in np.array_split(rows, -(-rows.size // _TOGETHER) if alone else 1):
             *own, length = values[part].T[:, :, None, None]
             known = self.model_copy(update=dict(zip(names, own, strict=True)))
-            found.append(known._course(contact, length, curve, paths[part]))
-        shares, depths = (np.concatenate(parts) for parts in zip(*found, strict=True))
+            courses.append(known._course(contact, length, curve, paths[part]))
+        shares, depths = (np.concatenate(parts) for parts in zip(*courses, strict=True))
         back = np.array([numbers[key] for key in keys])
         if path.ndim == 1 and count == 1:
             return shares[0], depths[0]

@@ -22,12 +22,12 @@ class Shape(Bends):
 def in_place(contact: Contact, name: str, **fields: float | None) -> Contact:
     """Return the contact of another indenter in place of that of one, of the same size."""
     of = Contact.on_half_space
-    other = of(_body(name, **fields), contact.modulus, contact.deepest, contact.size)
-    return replace(other, tension=contact.tension)
+    exchanged = of(_body(name, **fields), contact.modulus, contact.deepest, contact.size)
+    return replace(exchanged, tension=contact.tension)
 
 
 @lru_cache(maxsize=64)
 def _body(name: str, **fields: float | None) -> HasForceCurve:
-    other = indenter(name, **fields)
-    assert isinstance(other, HasForceCurve)
-    return other
+    body = indenter(name, **fields)
+    assert isinstance(body, HasForceCurve)
+    return body

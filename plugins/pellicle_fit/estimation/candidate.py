@@ -55,16 +55,16 @@ class Candidate:
     @property
     def parameters(self) -> dict[str, Estimate]:
         """All quantities of the explanation by name; some intervals were not sought."""
-        found = {}
+        values = {}
         for slot, at in zip(self.objective.slots, self.minimum.at, strict=True):
             bare = Estimate(slot.value(at), None, None, slot.quantity.unit)
-            found[slot.full_name] = self.estimates.get(slot.full_name, bare)
+            values[slot.full_name] = self.estimates.get(slot.full_name, bare)
         for part in self.objective.explanation.parts:
             for name, quantity in quantities(type(part)).items():
                 if name not in part.open:
                     value = float(getattr(part, name))
-                    found[name] = Estimate(value, value, value, quantity.unit, held=True)
-        return found
+                    values[name] = Estimate(value, value, value, quantity.unit, held=True)
+        return values
 
     @property
     def correlations(self) -> dict[tuple[str, str], float]:
@@ -156,9 +156,9 @@ class Candidate:
         """Return the same at another noise [N] of each curve, which scales χ² and no more."""
         was = self.objective.noise
         factors = [old / new for old, new in zip(was, noise, strict=True)]
-        found = self.minimum._replace(squares=_scaled(self.minimum.squares, factors))
+        minimum = self.minimum._replace(squares=_scaled(self.minimum.squares, factors))
         objective = replace(self.objective, noise=tuple(noise))
-        new = replace(self, objective=objective, minimum=found)
+        new = replace(self, objective=objective, minimum=minimum)
         new.__dict__["squares"] = _scaled(self.squares, factors)
         return new
 
@@ -178,14 +178,14 @@ class Candidate:
         # Behind the rows of all curves stand those of what is weighed.
         by_curve = np.split(jacobian, np.cumsum([force.size for force in forces]))[:-1]
         memory = self.objective.memory or [0.0] * len(forces)
-        columns, found = (self.known, self.whole, forces, objective.noise, by_curve, memory), []
+        columns, checks = (self.known, self.whole, forces, objective.noise, by_curve, memory), []
         for known, curve, force, noise, derivatives, d in zip(*columns, strict=True):
             depth = known.base_depth(curve)
-            one = check_residuals(curve, curve.force - force, derivatives * noise, depth, d)
+            check = check_residuals(curve, curve.force - force, derivatives * noise, depth, d)
             if np.max(known.depth(curve)) > known.contact(curve).depth_limit:
-                one = one._replace(flaws=one.flaws | {Flaw.TOO_DEEP})
-            found.append(one)
-        return found
+                check = check._replace(flaws=check.flaws | {Flaw.TOO_DEEP})
+            checks.append(check)
+        return checks
 
 
 def _scaled(squares: Sequence[float], factors: Sequence[float]) -> tuple[float, ...]:

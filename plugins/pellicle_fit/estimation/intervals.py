@@ -110,10 +110,10 @@ def common_value(estimates: Sequence[Estimate]) -> float:
         return max(off)
 
     values = [estimate.value for estimate in estimates]
-    for one, other in permutations(estimates, 2):
-        if one.high is not None and other.low is not None and one.value < other.value:
-            up, down = one.high - one.value, other.value - other.low
-            values.append((one.value * down + other.value * up) / ((up + down) or np.inf))
+    for lower, upper in permutations(estimates, 2):
+        if lower.high is not None and upper.low is not None and lower.value < upper.value:
+            up, down = lower.high - lower.value, upper.value - upper.low
+            values.append((lower.value * down + upper.value * up) / ((up + down) or np.inf))
     value = min(values, key=furthest)
     return value if furthest(value) <= 1 else np.nan
 
@@ -133,23 +133,23 @@ def estimates(
 
     A quantity of one of several curves has the number of the curve behind its name.
     """
-    wanted = [k for k, slot in enumerate(objective.slots) if not names or slot.name in names]
+    numbers = [k for k, slot in enumerate(objective.slots) if not names or slot.name in names]
     for left in range(_RESTARTS, -1, -1):
         jacobian = objective.jacobian(minimum.at, range(minimum.at.size))
-        pairs = [(k, sign) for k in wanted for sign in (-1, 1)]
+        pairs = [(k, sign) for k in numbers for sign in (-1, 1)]
         ways = [_Way(objective, minimum, jacobian, *pair, threshold) for pair in pairs]
         # Where χ² jumps, every way may end a little lower.
         better = _followed(objective, minimum, ways, _IMPROVEMENT if left else np.inf)
         if better is None:
             break
         minimum = objective.minimise(better.at)
-    found = {}
-    for k, low, high in zip(wanted, ways[::2], ways[1::2], strict=True):
+    intervals = {}
+    for k, low, high in zip(numbers, ways[::2], ways[1::2], strict=True):
         slot = objective.slots[k]
         value = slot.value(minimum.at[k])
         unit, ends = slot.quantity.unit, (low.kind, high.kind)
-        found[slot.full_name] = Estimate(value, low.end, high.end, unit, ends=ends)
-    return minimum, found
+        intervals[slot.full_name] = Estimate(value, low.end, high.end, unit, ends=ends)
+    return minimum, intervals
 
 
 class _Way:
@@ -201,26 +201,26 @@ class _Way:
         start[self.k] = self.minimum.at[self.k] + self.sign * self.distance
         return np.asarray(start)
 
-    def reached(self, found: Minimum) -> None:
+    def reached(self, minimum: Minimum) -> None:
         """Go on from the least χ² at the present distance, by a secant of the root of its rise."""
-        rise = float(np.sqrt(max(found.chi_squared - self.minimum.chi_squared, 0.0)))
+        rise = float(np.sqrt(max(minimum.chi_squared - self.minimum.chi_squared, 0.0)))
         here, excess, last = self.distance, rise - self.rise, self.below
         if excess > 0:
-            self.above = here, excess, found.at
+            self.above = here, excess, minimum.at
         else:
-            self.before, self.below = last, (here, excess, found.at)
+            self.before, self.below = last, (here, excess, minimum.at)
             if here >= self.limit:
                 self.ended = True
                 return
         bracketed = np.isfinite(self.above[0])
-        one, other = (self.below, self.above) if bracketed else (last, self.below)
-        if other[0] <= one[0]:
+        first, second = (self.below, self.above) if bracketed else (last, self.below)
+        if second[0] <= first[0]:
             # χ² jumps here: from another start a search has found another minimum.
             self.stop()
             self.ended = True
             return
-        slope = (other[1] - one[1]) / (other[0] - one[0])
-        new = one[0] - one[1] / slope if slope > 0 else np.inf
+        slope = (second[1] - first[1]) / (second[0] - first[0])
+        new = first[0] - first[1] / slope if slope > 0 else np.inf
         is_close = abs(excess) <= _SMALL * self.rise
         if bracketed:
             low, high = self.below[0], self.above[0]
@@ -267,11 +267,11 @@ def _followed(
             return None
         held = np.zeros((len(going), minimum.at.size), dtype=bool)
         held[np.arange(len(going)), [way.k for way in going]] = True
-        found = descend(objective, np.array([way.start for way in going]), held, fall=_PROFILE)
-        for way, one in zip(going, found, strict=True):
-            if one.chi_squared < minimum.chi_squared - improvement:
-                return one
-            way.reached(one)
+        minima = descend(objective, np.array([way.start for way in going]), held, fall=_PROFILE)
+        for way, least in zip(going, minima, strict=True):
+            if least.chi_squared < minimum.chi_squared - improvement:
+                return least
+            way.reached(least)
     for way in ways:
         way.stop()
     return None

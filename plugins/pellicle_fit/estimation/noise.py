@@ -116,10 +116,10 @@ def check_residuals(
         return ResidualCheck(noise, frozenset(flaws), noise.deviation)
     # Towards contact, on a retraction too.
     rows = np.flatnonzero(before)[:: -1 if curve.moves_out[before][0] else 1]
-    found, white, noise = _before_contact(residuals[rows], curve.base[rows], least)
-    far = noise if Flaw.SLOW in found else neighbour_noise(residuals[rows], least)
+    free_flaws, white, noise = _before_contact(residuals[rows], curve.base[rows], least)
+    far = noise if Flaw.SLOW in free_flaws else neighbour_noise(residuals[rows], least)
     deviation = white.deviation
-    flaws |= found
+    flaws |= free_flaws
     if step > _COARSE * neighbour_noise(residuals[rows]).deviation:
         flaws.add(Flaw.STEPS)
     inside, free = ~before, max(int(np.sum(~before)) - jacobian.shape[1], 1)
@@ -181,14 +181,14 @@ def _dip(force: Array, trend: Array) -> tuple[float, int]:
 
     The mean is weighted, so that its noise is that of one row.
     """
-    found = []
+    dips = []
     for share in _WINDOWS:
         window = np.where(np.arange(force.size) >= force.size * (1 - share), 1.0, 0.0)
         rows = int(window.sum())
         window -= trend @ (trend.T @ window)
         size = max(float(np.linalg.norm(window)), 1e-300)
-        found.append((float(window @ force) / size, rows))
-    return min(found)
+        dips.append((float(window @ force) / size, rows))
+    return min(dips)
 
 
 def binned(residuals: Array, jacobian: Array, bin_of: NDArray[np.intp], count: int) -> Noise | None:

@@ -77,13 +77,13 @@ class Objective(Coordinates):
         terms, balances = [], []
         for i, curve in enumerate(self.curves):
             shape = (len(at), curve.force.size)
-            found = self.known(at, i).balance(curve, together=self.takes_columns)
-            balance = Balance(*(_of_shape(part, shape) for part in found))
+            balance_of_curve = self.known(at, i).balance(curve, together=self.takes_columns)
+            balance = Balance(*(_of_shape(part, shape) for part in balance_of_curve))
             terms.append(self._term(balance.recorded - curve.force, i))
             balances.append(balance)
-        for k, slot, given in self._weighed:
+        for k, slot, weighed in self._weighed:
             values = np.array([slot.value(coordinate) for coordinate in at[:, k]])
-            terms.append((values[:, None] - given) / given.deviation)
+            terms.append((values[:, None] - weighed) / weighed.deviation)
         terms.append(self._of_sines(at))
         return Trials(np.concatenate(terms, axis=1), tuple(balances))
 
@@ -115,12 +115,12 @@ class Objective(Coordinates):
     def _weighed(self) -> list[tuple[int, Slot, Weighed]]:
         """Coordinates of what is weighed, and its values."""
         parts = self.explanation.parts
-        given = [(k, s, getattr(parts[s.part], s.name)) for k, s in enumerate(self.slots)]
-        return [entry for entry in given if isinstance(entry[2], Weighed)]
+        inputs = [(k, s, getattr(parts[s.part], s.name)) for k, s in enumerate(self.slots)]
+        return [entry for entry in inputs if isinstance(entry[2], Weighed)]
 
     def derivatives(self, at: Array, trials: Trials) -> Array:
         """Return the derivatives of the terms of trials, of shape (k, coordinates, terms)."""
-        found = np.zeros((*at.shape, trials.terms.shape[1]))
+        slopes = np.zeros((*at.shape, trials.terms.shape[1]))
         steps = np.where(at + _STEP <= self.limits[1], _STEP, -_STEP)
         end = 0
         for i, (curve, balance) in enumerate(zip(self.curves, trials.balances, strict=True)):
@@ -137,20 +137,22 @@ class Objective(Coordinates):
                 else:
                     forces = known.beside(curve, near, together=self.takes_columns)
                 rates = self._term((forces - near.recorded) / step[:, None], i)
-                found[:, some, begin:end] = rates.reshape(len(at), len(some), -1)
+                slopes[:, some, begin:end] = rates.reshape(len(at), len(some), -1)
             if touches:
                 shift = _STEP * self.slots[touches[0]].scale
                 forces = self.known(at, i).recorded(balance.force - shift * balance.rate, curve)
-                found[:, touches[0], begin:end] = self._term((forces - balance.recorded) / _STEP, i)
-        for number, (k, slot, given) in enumerate(self._weighed):
+                slopes[:, touches[0], begin:end] = self._term(
+                    (forces - balance.recorded) / _STEP, i
+                )
+        for number, (k, slot, weighed) in enumerate(self._weighed):
             move = [slot.value(x + _STEP) - slot.value(x - _STEP) for x in at[:, k]]
-            found[:, k, end + number] = np.array(move) / (2 * _STEP * given.deviation)
+            slopes[:, k, end + number] = np.array(move) / (2 * _STEP * weighed.deviation)
         if any(curve.sines for curve in self.curves):
             here, end = self._of_sines(at), end + len(self._weighed)
             for k in range(at.shape[1]):
                 moved = at + steps[:, [k]] * np.eye(at.shape[1])[k]
-                found[:, k, end:] = (self._of_sines(moved) - here) / steps[:, [k]]
-        return found
+                slopes[:, k, end:] = (self._of_sines(moved) - here) / steps[:, [k]]
+        return slopes
 
     @cached_property
     def takes_columns(self) -> bool:
@@ -165,7 +167,7 @@ class Objective(Coordinates):
         The former move what is recorded and no balance; a contact point moves depths of the base
         and nothing else.
         """
-        found = []
+        kinds_of_curves = []
         responds, together = self.explanation.of(Responds), self.takes_columns
         # What is recorded of a path without a load is in the path that a memory sees.
         remembers = any(not effect.balances for effect in responds)
@@ -178,8 +180,8 @@ class Objective(Coordinates):
                 is_record = alone and not bound
                 is_touch = self.slots[k].name == CONTACT_POINT and not responds
                 kinds[0 if together and is_record else 1 if together and is_touch else 2].append(k)
-            found.append(kinds)
-        return found
+            kinds_of_curves.append(kinds)
+        return kinds_of_curves
 
     def terms(self, at: Array) -> Array:
         """Return the terms of coordinates; if forces do not balance, it is a ConvergenceError."""
@@ -229,7 +231,7 @@ class Objective(Coordinates):
         ConvergenceError.
         """
         stays = np.isin(np.arange(len(self.slots)), [*held])
-        (found,) = descend(self, np.asarray(start, dtype=float)[None], stays[None], steps=steps)
-        if not np.isfinite(found.chi_squared):
-            self.forces(found.at)
-        return found
+        (minimum,) = descend(self, np.asarray(start, dtype=float)[None], stays[None], steps=steps)
+        if not np.isfinite(minimum.chi_squared):
+            self.forces(minimum.at)
+        return minimum

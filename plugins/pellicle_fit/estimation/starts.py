@@ -33,15 +33,15 @@ _GUESS = 0.03
 
 def starts(objective: Objective, known: Sequence[Candidate], *, scan: bool) -> list[Array]:
     """Return coordinates to start from: of minima of other explanations, and of a scan."""
-    found, own = pooled(objective) if scan else [], list(_own(objective))
-    for other in known:
+    coordinates, own = pooled(objective) if scan else [], list(_own(objective))
+    for candidate in known:
         # A search from a part of a part starts further off.
-        if any(other.types < larger.types for larger in known):
+        if any(candidate.types < larger.types for larger in known):
             continue
-        at = objective.at_values(other.objective.values(other.minimum.at))
+        at = objective.at_values(candidate.objective.values(candidate.minimum.at))
         # Starts that differ in what is known already are one.
-        found += [*np.unique([np.where(np.isnan(at), guess, at) for guess in own], axis=0)]
-    return found
+        coordinates += [*np.unique([np.where(np.isnan(at), guess, at) for guess in own], axis=0)]
+    return coordinates
 
 
 def _own(objective: Objective) -> Iterator[Array]:
@@ -57,19 +57,19 @@ def pooled(objective: Objective) -> list[Array]:
     """Return the best of scans of each curve: medians of what the curves share."""
     if len(objective.curves) == 1:
         return scanned(objective)
-    each = []
+    guesses = []
     for curve, noise in zip(objective.curves, objective.noise, strict=True):
         sizes = objective.sizes._replace(shallow_force=curve.shallow_force)
         alone = replace(objective, curves=(curve,), noise=(noise,), sizes=sizes, memory=())
         minima = descend(alone.coarse, np.array(scanned(alone)), steps=_ROUGH)
         values = [alone.values(minimum.at).items() for minimum in minima]
-        each.append([{name: value for (name, _), value in of} for of in values])
+        guesses.append([{name: value for (name, _), value in of} for of in values])
 
     def value(slot: Slot, known: Sequence[dict[str, float]]) -> float:
         shared = float(np.median([values[slot.name] for values in known]))
         return slot.coordinate(shared if slot.curve is None else known[slot.curve][slot.name])
 
-    several = zip(*each, strict=False)
+    several = zip(*guesses, strict=False)
     return [np.array([value(slot, known) for slot in objective.slots]) for known in several]
 
 
@@ -87,7 +87,7 @@ def scanned(objective: Objective) -> list[Array]:
     shifts = means.known(owns, 0).free_force(curve) / (curve.stiffness or np.inf)
     shifts, group = np.unique(np.atleast_2d(shifts), axis=0, return_inverse=True)
     groups = np.broadcast_to(group, len(owns))
-    found = []
+    scans = []
     for number, shift in enumerate(shifts):
         some = owns[groups == number]
         tip = replace(curve, position=curve.position + shift, stiffness=None)
@@ -99,10 +99,10 @@ def scanned(objective: Objective) -> list[Array]:
         if point is not None:
             at[:, point] = np.tile(touches / objective.slots[point].scale, len(some))
         misfits, scaled = _scaled(replace(means, curves=(tip,)), at)
-        each = np.argmin(misfits.reshape(len(some), -1), axis=1)
-        best = each + np.arange(len(some)) * (len(at) // len(some))
-        found += [*zip(misfits[best], scaled[best], strict=True)]
-    return [at for _, at in sorted(found, key=lambda trial: trial[0])[:_KEPT]]
+        positions = np.argmin(misfits.reshape(len(some), -1), axis=1)
+        best = positions + np.arange(len(some)) * (len(at) // len(some))
+        scans += [*zip(misfits[best], scaled[best], strict=True)]
+    return [at for _, at in sorted(scans, key=lambda trial: trial[0])[:_KEPT]]
 
 
 def _scaled(objective: Objective, at: Array) -> tuple[Array, Array]:

@@ -85,13 +85,13 @@ def clean(
     _check_rise(base, f)
     if t is None and curve.speed is not None:
         t = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(base)))]) / curve.speed
-    ways = passes(base, pause)
-    first, last, unloading = rows_of(base, ways, segment)
+    segments = passes(base, pause)
+    first, last, unloading = rows_of(base, segments, segment)
     rows = np.arange(first, last + 1)
     if pause is not None and segment in ("approach", "retract"):
         rows = rows[~pause[rows]]
-    elif pause is not None and segment == "both" and len(ways) > 1:
-        unloading = ways[1].first
+    elif pause is not None and segment == "both" and len(segments) > 1:
+        unloading = segments[1].first
     if left := z.size - rows.size:
         which = "both passes" if segment == "both" else f"the {segment.replace('+', ' and ')}"
         of = f"rows {_spans(number, rows)} are {which}"
@@ -102,8 +102,8 @@ def clean(
     if segment != "both" and back > _MODULATED * np.ptp(base):
         text = f"the position moves back by up to {readable(back, 'm', 2)} within the {segment}"
         messages.append(Note(f"{text}, which is fitted as one pass"))
-    is_later = segment in ("approach", "approach+hold") and ways[-1].first >= last
-    later = number[ways[-1].first : ways[-1].last + 1]
+    is_later = segment in ("approach", "approach+hold") and segments[-1].first >= last
+    later = number[segments[-1].first : segments[-1].last + 1]
     if segment == "retract":
         messages.append("a retract is fitted as if nothing adhered: compare with the approach")
     _check_count(rows.size, "it" if segment == "both" else f"its {segment}")

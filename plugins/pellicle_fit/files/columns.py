@@ -51,16 +51,16 @@ def column_map(value: object) -> dict[str, str] | None:
             f"{shown(value)} is not of the form 'Z = extension nm, Defl = deflection nm', or a "
             "table of the same"
         )
-    found: dict[str, tuple[str, str]] = {}
+    roles: dict[str, tuple[str, str]] = {}
     for column, text in table.items():
         role, *unit = str(text).split() or [""]
         role = role.lower()
         if role not in NAMES:
             raise ConfigError(f"{shown(role)} is not a role; {nearest(role, NAMES)}", str(column))
-        if role in found:
-            raise ConfigError(f"{found[role][0]!r} and {column!r} are both {role}")
-        found[role] = str(column), " ".join([role, *unit])
-    return dict(found[role] for role in NAMES if role in found)
+        if role in roles:
+            raise ConfigError(f"{roles[role][0]!r} and {column!r} are both {role}")
+        roles[role] = str(column), " ".join([role, *unit])
+    return dict(roles[role] for role in NAMES if role in roles)
 
 
 class PerAmpere(float):
@@ -133,17 +133,17 @@ class Column(NamedTuple):
         si, name = si_unit(unit), self.name.lower()
         return bool(si) and (name not in NAMES or si in UNITS.get(name, "m"))
 
-    def unit_beside(self, given: str, path: Path) -> str:
-        """Return a unit that is ``given`` for the column, or else its own.
+    def unit_beside(self, unit: str, path: Path) -> str:
+        """Return the ``unit`` that the user gives the column, or else its own.
 
         One that contradicts its own is a ConfigError.
         """
-        if self.contradicts(given):
+        if self.contradicts(unit):
             raise ConfigError(
-                f"{path}: column {self.name!r} is in {self.unit} by its header, and {given} was "
+                f"{path}: column {self.name!r} is in {self.unit} by its header, and {unit} was "
                 "given for it; leave the unit out of columns, or correct the header"
             )
-        return given or self.unit
+        return unit or self.unit
 
 
 Columns = Mapping[str, Column]
@@ -261,14 +261,14 @@ def check_signal(sensitivity: float, unit: str) -> None:
         )
 
 
-def recalibrated(curve: Measurement, given: Calibration, *, is_own: bool) -> Measurement:
-    """Return a curve with the spring constant that is ``given`` in place of that of its file.
+def recalibrated(curve: Measurement, calibration: Calibration, *, is_own: bool) -> Measurement:
+    """Return a curve with the spring constant of a calibration in place of that of its file.
 
     The deflection, and so the position, is as it was: the force is scaled.  A sensitivity that is
     given and was not used is a warning or, where the calibration is the file's own, a ConfigError.
     """
-    new, old = given.spring_constant, curve.stiffness
-    if given.sensitivity is not None and curve.origin.sensitivity is None:
+    new, old = calibration.spring_constant, curve.stiffness
+    if calibration.sensitivity is not None and curve.origin.sensitivity is None:
         text = "is not used: no signal that is read is in volts or amperes"
         if is_own:
             raise ConfigError(f"{text}; leave it out", "sensitivity")

@@ -99,7 +99,7 @@ def guessed(heads: Sequence[Column], known: Columns) -> dict[str, Column]:
         name = next((text for text in names if not _UNSAFE.search(text)), str(index + 1))
         words = (role for role, of in _ROLES.items() if re.search(of, head.name.lower()))
         columns.append((next(words, _BY_UNIT.get(si_unit(head.unit), "")), name, head))
-    found: dict[str, tuple[str, Column]] = {}
+    guesses: dict[str, tuple[str, Column]] = {}
     for role, name, head in columns:
         is_signal = role in ("force", "deflection")
         kind = "signal" if is_signal else role if role in ("", "time") else "place"
@@ -113,15 +113,15 @@ def guessed(heads: Sequence[Column], known: Columns) -> dict[str, Column]:
             # Instruments call a signal in any unit a deflection.
             role = "force" if si_unit(unit) == "N" else "deflection"
         if kind and (unit or kind != "time" or role in known):
-            found.setdefault(kind, (role, Column("", name, unit)))
-    signal, _ = found.setdefault("signal", ("deflection", Column("", UNKNOWN, "")))
-    role, place = found.setdefault("place", ("height", Column("", UNKNOWN, "")))
+            guesses.setdefault(kind, (role, Column("", name, unit)))
+    signal, _ = guesses.setdefault("signal", ("deflection", Column("", UNKNOWN, "")))
+    role, place = guesses.setdefault("place", ("height", Column("", UNKNOWN, "")))
     if role == "height" and role not in known and place.name != UNKNOWN:
         # Most heights fall as the tip goes down, and most others grow; which it is shows in a fit.
         # Beside a deflection, in whatever unit, the place is that of the base.
         is_bent = any(re.search(_ROLES["deflection"], head.name.lower()) for head in heads)
         if signal == "force" and not is_bent and not _OF_BASE.search(place.name.lower()):
-            found["place"] = "position", place
+            guesses["place"] = "position", place
         elif "height" not in place.name.lower():
-            found["place"] = "extension", place
-    return dict(found.values())
+            guesses["place"] = "extension", place
+    return dict(guesses.values())

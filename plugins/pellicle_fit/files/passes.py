@@ -61,19 +61,19 @@ def order_of_time(time: Array, position: Array, segment: Segment) -> NDArray[np.
     return order if is_motion and (position[order[0]] < 0.5 or segment == "retract") else None
 
 
-def rows_of(base: Array, found: Sequence[Pass], segment: Segment) -> tuple[int, int, int]:
+def rows_of(base: Array, segments: Sequence[Pass], segment: Segment) -> tuple[int, int, int]:
     """Return the first and the last row of a segment, and the first of unloading."""
-    if len(found) > 2:
+    if len(segments) > 2:
         raise ConfigError(
-            f"goes to and fro {len(found)} times: several curves, or rows out of order; give one "
-            "curve at a time, its rows in order",
+            f"goes to and fro {len(segments)} times: several curves, or rows out of order; give "
+            "one curve at a time, its rows in order",
             "position",
         )
     if segment == "both":
         # A base may settle a little before it moves in.
-        if len(found) > 1 and abs(base[found[0].last] - base[0]) < _CYCLE * np.ptp(base):
-            found = found[not found[0].inward :]
-        if not found[0].inward:
+        if len(segments) > 1 and abs(base[segments[0].last] - base[0]) < _CYCLE * np.ptp(base):
+            segments = segments[not segments[0].inward :]
+        if not segments[0].inward:
             raise ConfigError(
                 "does not begin with an approach, and both passes are to be fitted; give the rows "
                 "in order of time, or set segment to the pass that there is",
@@ -82,20 +82,20 @@ def rows_of(base: Array, found: Sequence[Pass], segment: Segment) -> tuple[int, 
         # At the turn the retract may rest, and hold noise.
         noise = _NORMAL * float(np.median(np.abs(np.diff(base, 2))))
         deepest = int(np.flatnonzero(base >= base.max() - _WILD * noise)[-1])
-        out = max(found[1].first, deepest) + 1 if len(found) > 1 else base.size
-        return found[0].first, base.size - 1, out
+        out = max(segments[1].first, deepest) + 1 if len(segments) > 1 else base.size
+        return segments[0].first, base.size - 1, out
     is_approach = segment != "retract"
-    for number, (first, last, inward) in enumerate(found):
+    for number, (first, last, inward) in enumerate(segments):
         if inward == is_approach:
             if segment == "approach+hold":
                 # A hold of the tip moves the base by what a cantilever bends.
-                far = (f for f in found[number + 1 :] if _leaves(base, f))
+                far = (f for f in segments[number + 1 :] if _leaves(base, f))
                 last = next((f.first - 1 for f in far), base.size - 1)
             return first, last, base.size if is_approach else first
-    way, other = ("out of", "a retract") if is_approach else ("into", "an approach")
+    way, name = ("out of", "a retract") if is_approach else ("into", "an approach")
     raise ConfigError(
-        f"only moves {way} the solid: this is {other}, and the {segment} is to be fitted; give the "
-        f"{segment}, or set segment to {other.split()[1]!r}",
+        f"only moves {way} the solid: this is {name}, and the {segment} is to be fitted; give the "
+        f"{segment}, or set segment to {name.split()[1]!r}",
         "position",
     )
 
@@ -120,7 +120,7 @@ def passes(base: Array, pause: Mask | None = None) -> list[Pass]:
         near = [row for row in gaps if abs(row - turn) * _NEAR <= base.size]
         ends.append(min(near, key=lambda row: abs(row - turn)) if near else turn)
         starts.append(ends[-1] + bool(near))
-    found = []
+    segments = []
     for first, last in zip(starts, [*ends, base.size - 1], strict=True):
         inward = bool(base[last] > base[first])
         last -= last < base.size - 1 and last - 1 in jumps
@@ -133,8 +133,8 @@ def passes(base: Array, pause: Mask | None = None) -> list[Pass]:
             rest = _rest(base[first : last + 1][:: 1 if inward else -1])
             first, last = (first, last - rest) if inward else (first + rest, last)
         first += first > 0 and first in jumps
-        found.append(Pass(int(rows[first]), int(rows[last]), inward))
-    return found
+        segments.append(Pass(int(rows[first]), int(rows[last]), inward))
+    return segments
 
 
 def _turns(base: Array) -> list[int]:

@@ -39,10 +39,10 @@ class Reader(Component):
         return True
 
     @abstractmethod
-    def read(self, path: Path, given: Calibration) -> Readers:
+    def read(self, path: Path, calibration: Calibration) -> Readers:
         """Return what reads each curve of a file, one at a time, by its label.
 
-        The label is empty where a file holds one curve. ``given`` is the calibration that the user
+        The label is empty where a file holds one curve. ``calibration`` is what the user
         gives, which `curve_of` takes. A file that cannot be read is a StorageError.
         """
 
@@ -61,7 +61,7 @@ class Reader(Component):
 def curve_of(
     path: Path,
     columns: Mapping[str, tuple[ArrayLike, str]],
-    given: Calibration,
+    calibration: Calibration,
     *,
     spring_constant: float | None = None,
     sensitivity: float | None = None,
@@ -86,14 +86,14 @@ def curve_of(
         for role, (values, unit) in columns.items()
     }
     own = Calibration(
-        spring_constant=spring_constant or given.spring_constant,
-        sensitivity=given.sensitivity or sensitivity,
-        speed=given.speed,
+        spring_constant=spring_constant or calibration.spring_constant,
+        sensitivity=calibration.sensitivity or sensitivity,
+        speed=calibration.speed,
     )
     if lacks := lacking(made, own):
         raise MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in lacks})
     curve = replace(from_columns(made, own), site=site, pause=pause, messages=messages)
-    return recalibrated(curve, given, is_own=True)
+    return recalibrated(curve, calibration, is_own=True)
 
 
 def sections_of(

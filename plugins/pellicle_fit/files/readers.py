@@ -31,20 +31,20 @@ def read(path: Path, calibration: Calibration | None = None) -> Readers:
 
     The columns of the calibration name those of a table, and the arrays of an HDF5 or MATLAB file.
     """
-    given = calibration or Calibration()
+    known_calibration = calibration or Calibration()
     if os.path.exists(path) and not (is_file(path) or is_folder(path)):
         raise StorageError(f"{path}: is a pipe or a device; give a file")
     makers, others = _of_suffix(path)
-    maker = None if given.columns and others else _sniffed(path, makers, others)
-    if maker and given.columns:
+    maker = None if known_calibration.columns and others else _sniffed(path, makers, others)
+    if maker and known_calibration.columns:
         raise ConfigError(f"{path} states what its columns are; leave columns out", "columns")
     if maker:
-        return maker.read(path, given)
+        return maker.read(path, known_calibration)
     table = registry().make(Reader, {"type": _TABLE})
     if others or not makers or not is_file(path):
-        return (others or [table])[0].read(path, given)
+        return (others or [table])[0].read(path, known_calibration)
     with suppress(StorageError):
-        return table.read(path, given)
+        return table.read(path, known_calibration)
     kinds = " or ".join(reader.type_name for reader in makers)
     raise StorageError(f"{path}: has the suffix of force curves ({kinds}), and holds none")
 

@@ -113,8 +113,8 @@ def _listed(
         files = [(name, {}, name) for name in curves]
     else:
         paths = [curves] if isinstance(curves, (str, Path)) else curves
-        found = [path for text in paths for path in expanded(text)]
-        files = [file for path in found for file in _files(path, mapped)]
+        expanded_paths = [path for text in paths for path in expanded(text)]
+        files = [file for path in expanded_paths for file in _files(path, mapped)]
     if not files:
         raise ConfigError("holds no curve; give files, or a folder of them", "curves")
     for name, values in per_file.items():

@@ -43,16 +43,16 @@ _CONSTANTS = {
 
 def _lines(path: Path) -> tuple[list[str], list[int]]:
     """Return the lines of a text, and the numbers of those without comments."""
-    wanted = f"{path} as a text", "export a part of it"
+    purpose = f"{path} as a text", "export a part of it"
     with suppress(OSError):
-        require_for(_PER_BYTE * path.stat().st_size, *wanted)
+        require_for(_PER_BYTE * path.stat().st_size, *purpose)
     try:
         text = read_text(path)
     except OSError as error:
         raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
     except ValueError as error:
         raise csv.Error from error
-    require_for(_PER_CELL * sum(map(text.count, ",;\t \n")), *wanted)
+    require_for(_PER_CELL * sum(map(text.count, ",;\t \n")), *purpose)
     lines = [line for line in text.splitlines() if line.strip()]
     data = [number for number, line in enumerate(lines) if not line.startswith(_COMMENT)]
     if not data:
@@ -142,16 +142,16 @@ def _key(name: str) -> str:
 
 def _constants(lines: Sequence[str], is_export: bool) -> dict[str, float]:
     """Return constants that lines state with their units; JPK's export has them in SI."""
-    found: dict[str, set[float]] = {}
+    constants: dict[str, set[float]] = {}
     for match in filter(None, (_PAIR.match(plain(text[:200]).lstrip('#%\\*" ')) for text in lines)):
-        key, unit, number, other = match.groups(default="")
-        name, unit = _CONSTANTS.get(_key(key)), unit or other
+        key, unit, number, second_unit = match.groups(default="")
+        name, unit = _CONSTANTS.get(_key(key)), unit or second_unit
         with suppress(ValueError):
             number = number.replace(",", ".")
             value = float(number) if is_export and not unit else f"{number} {unit}"
             if name:
-                found.setdefault(name, set()).add(getattr(Calibration(**{name: value}), name))
-    return {name: values.pop() for name, values in found.items() if len(values) == 1}
+                constants.setdefault(name, set()).add(getattr(Calibration(**{name: value}), name))
+    return {name: values.pop() for name, values in constants.items() if len(values) == 1}
 
 
 def _header(
@@ -164,17 +164,17 @@ def _header(
     comment with as many words.
     """
     heads = _candidates(lines, data)
-    wanted = [name for name in mapped if not name.isdecimal()]
-    for number, found in heads.items():
-        names = {head.name.lower() for head in found}
+    keys = [name for name in mapped if not name.isdecimal()]
+    for number, columns in heads.items():
+        names = {head.name.lower() for head in columns}
         is_known = not mapped and is_curve(names)
-        if is_known or (wanted and all(any(h.is_called(name) for h in found) for name in wanted)):
-            return number, found
+        if is_known or (keys and all(any(h.is_called(name) for h in columns) for name in keys)):
+            return number, columns
     width = len(_heads(lines[data[-1]]))
-    alike = {number: found for number, found in heads.items() if len(found) == width}
-    for number, found in () if mapped else alike.items():
-        if all(column.name != UNKNOWN for column in guessed(found, {}).values()):
-            return number, found
+    alike = {number: columns for number, columns in heads.items() if len(columns) == width}
+    for number, columns in () if mapped else alike.items():
+        if all(column.name != UNKNOWN for column in guessed(columns, {}).values()):
+            return number, columns
     if data[0] in heads:
         return data[0], heads[data[0]]
     comments = (n for n in alike if n < data[0] and ":" not in _EXPORT.sub(r"\2", lines[n]))
@@ -269,22 +269,22 @@ def read_table(
         roles = guessed([head for head in heads if "tip" not in head.name.lower()], {})
         if "height" in roles:
             known = {c.name: role for role, c in roles.items() if c.name != UNKNOWN}
-    columns, chosen = {}, dict[str, int]()
+    columns, places = {}, dict[str, int]()
     for name in known:
         matches = [index for index, head in enumerate(heads) if head.is_called(name)]
         if not matches and name.isdecimal() and 1 <= int(name) <= len(heads):
             matches = [int(name) - 1]
         if len(matches) == 1:
-            chosen[name] = matches[0]
+            places[name] = matches[0]
     # Decimals of one column tell what a mark means in another.
-    cells = {place: [row[place].strip() for row in rows] for place in chosen.values()}
+    cells = {place: [row[place].strip() for row in rows] for place in places.values()}
     decimals = [cell for texts in cells.values() for cell in texts if "." in cell]
-    for name, place in chosen.items():
+    for name, place in places.items():
         role, _, unit = known[name].partition(" ")
         head = heads[place]
         values = numbers(cells[place], decimals, separator, f"{path}: column {head.name}")
         # Heads that are doubled do not tell which column is which.
-        is_doubled = sum(other.text == head.text for other in heads) > 1
+        is_doubled = sum(head_beside.text == head.text for head_beside in heads) > 1
         unit = unit if unit and is_doubled else head.unit_beside(unit, path)
         columns[role] = head._replace(unit=unit, values=values)
     return {"": columns}, heads, _constants(stated, is_export)

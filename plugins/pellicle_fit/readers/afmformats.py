@@ -67,9 +67,9 @@ class _AFM(Reader):
         with path.open("rb") as file:
             return self.mark in file.read(_BEGINNING)
 
-    def read(self, path: Path, given: Calibration) -> Readers:
+    def read(self, path: Path, calibration: Calibration) -> Readers:
         """Return what reads each curve by its number."""
-        return _read(path, given)
+        return _read(path, calibration)
 
 
 class JPK(_AFM, title="JPK"):
@@ -133,12 +133,12 @@ class Nova(_AFM, title="NT-MDT"):
             return [head.text for head in heads] == [""] * 3
         return False
 
-    def read(self, path: Path, given: Calibration) -> Readers:
+    def read(self, path: Path, calibration: Calibration) -> Readers:
         """Return what reads the only curve; what afmformats cannot read is a table."""
         try:
-            return _read(path, given, is_nt_mdt=True)
+            return _read(path, calibration, is_nt_mdt=True)
         except StorageError:
-            return Table().read(path, given)
+            return Table().read(path, calibration)
 
 
 class Exported(_AFM, title="export of afmformats"):
@@ -191,14 +191,14 @@ def _read(path: Path, calibration: Calibration, *, is_nt_mdt: bool = False) -> R
     return readers
 
 
-def _calibrated(path: Path, given: Calibration, is_nt_mdt: bool) -> list[Mapping[str, Any]]:
+def _calibrated(path: Path, calibration: Calibration, is_nt_mdt: bool) -> list[Mapping[str, Any]]:
     """Return the recordings in a file, with what it lacks of the calibration that is given.
 
     The loaders of makers differ in what they do with a spring constant that they do not need.
     """
     from afmformats.errors import MissingMetaDataError
 
-    known = {words: getattr(given, name) for words, name in _CALIBRATION.items()}
+    known = {words: getattr(calibration, name) for words, name in _CALIBRATION.items()}
     # What JPK stores is the signal of the detector, and how it was converted.
     used = {"sensitivity"} if path.suffix.lower() in _JPK else set()
 
@@ -214,11 +214,11 @@ def _calibrated(path: Path, given: Calibration, is_nt_mdt: bool) -> list[Mapping
         except MissingMetaDataError as error:
             used |= {*error.meta_keys}
             recordings = load()
-    if given.sensitivity is not None and "sensitivity" not in used:
+    if calibration.sensitivity is not None and "sensitivity" not in used:
         text = "is not used: the file holds forces, not the signal of a detector; leave it out"
         raise ConfigError(text, "sensitivity")
-    if given.sensitivity is not None:
-        check_signal(given.sensitivity, "A" if is_nt_mdt else "V")
+    if calibration.sensitivity is not None:
+        check_signal(calibration.sensitivity, "A" if is_nt_mdt else "V")
     return recordings
 
 
@@ -237,7 +237,7 @@ def _recordings(path: Path, values: dict[str, float], is_nt_mdt: bool) -> list[M
         with zipfile.ZipFile(path) as archive:
             names = [n for n in archive.namelist() if _WORKSHOP in archive.open(n).read(_BEGINNING)]
             texts = (TextIOWrapper(archive.open(name), "utf-8") for name in sorted(names))
-            return [one for text in texts for one in load_csv(text, None, values)]
+            return [recording for text in texts for recording in load_csv(text, None, values)]
     recipes = formats.formats_by_suffix[suffix]
     recipe = formats.recipe_ntmdt_txt if is_nt_mdt else formats.recipe_chiaro_txt
     loader = recipe["loader"] if suffix == ".txt" else recipes[0].loader
@@ -277,7 +277,7 @@ def _errors(path: Path, is_nt_mdt: bool) -> Iterator[None]:
 
 
 def _curve(
-    path: Path, recording: Mapping[str, Any], given: Calibration, is_nt_mdt: bool
+    path: Path, recording: Mapping[str, Any], calibration: Calibration, is_nt_mdt: bool
 ) -> Measurement:
     with _errors(path, is_nt_mdt):
         data, metadata = recording["data"], recording["metadata"]
@@ -290,8 +290,8 @@ def _curve(
         }
         if tip := columns.get("position"):
             columns["position"] = tip._replace(values=-tip.values)
-        constant = metadata.get("spring constant", given.spring_constant)
-        own = Calibration(spring_constant=constant, speed=given.speed)
+        constant = metadata.get("spring constant", calibration.spring_constant)
+        own = Calibration(spring_constant=constant, speed=calibration.speed)
         if lacks := lacking(columns, own):
             raise MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in lacks})
         curve, site = from_columns(columns, own), None
@@ -302,7 +302,7 @@ def _curve(
     origin = curve.origin._replace(sensitivity=metadata.get("sensitivity"), library="afmformats")
     messages = (_NT_MDT,) if is_nt_mdt else ()
     curve = replace(curve, origin=origin, site=site, messages=messages, pause=pause)
-    return recalibrated(curve, given, is_own=True)
+    return recalibrated(curve, calibration, is_own=True)
 
 
 def _pause(data: Mapping[str, Any], metadata: Mapping[str, Any]) -> Mask | None:

@@ -44,12 +44,12 @@ class NanoScope(Reader, title="Bruker NanoScope"):
         with path.open("rb") as file:
             return file.read(len(_MARK)) == _MARK
 
-    def read(self, path: Path, given: Calibration) -> Readers:
+    def read(self, path: Path, calibration: Calibration) -> Readers:
         """Return what reads the only curve."""
-        return {"": partial(_curve, path, given)}
+        return {"": partial(_curve, path, calibration)}
 
 
-def _curve(path: Path, given: Calibration) -> Measurement:
+def _curve(path: Path, calibration: Calibration) -> Measurement:
     try:
         sections = _sections(path)
         known = {name: value for _, section in sections for name, value in section.items()}
@@ -87,7 +87,7 @@ def _curve(path: Path, given: Calibration) -> Measurement:
     if all(np.isfinite(time) and time > 0 for time in times):
         columns["time"] = np.append(spans[0], times[0] + spans[1])[exists], "s"
     return curve_of(
-        path, columns, given, sensitivity=sensitivity, spring_constant=stiffness or None
+        path, columns, calibration, sensitivity=sensitivity, spring_constant=stiffness or None
     )
 
 

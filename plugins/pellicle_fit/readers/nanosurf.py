@@ -60,7 +60,7 @@ class Nanosurf(Reader, title="Nanosurf"):
             beginning = file.read(_LONGEST if path.stat().st_size < _LONGEST else 1 << 20)
         return beginning.startswith(b"[DataSet]") and _FORWARD.encode() in beginning
 
-    def read(self, path: Path, given: Calibration) -> Readers:
+    def read(self, path: Path, calibration: Calibration) -> Readers:
         """Return what reads each curve by its number, from 0."""
         try:
             sections, channels = _content(path)
@@ -71,7 +71,7 @@ class Nanosurf(Reader, title="Nanosurf"):
                 raise ValueError("no finished curve")
         except (OSError, ValueError, LookupError, OverflowError) as error:
             raise refused(path, "a spectrum of Nanosurf", error) from None
-        read = partial(_curve, path, sections, channels, given)
+        read = partial(_curve, path, sections, channels, calibration)
         return {str(n) if done > 1 else "": partial(read, n) for n in range(done)}
 
 
@@ -105,7 +105,7 @@ def _curve(
     path: Path,
     sections: Sections,
     channels: Mapping[str, Mapping[str, Channel]],
-    given: Calibration,
+    calibration: Calibration,
     number: int,
 ) -> Measurement:
     """Return a curve: the way there, the pause and the way back, as far as they are in the file."""
@@ -143,7 +143,7 @@ def _curve(
     return curve_of(
         path,
         columns,
-        given,
+        calibration,
         spring_constant=stiffness if stiffness > 0 else None,
         pause=is_pause if is_pause.any() else None,
     )

@@ -46,10 +46,10 @@ class Table(Reader, title="a table"):
             return is_curve(tables[""].keys())
         return True
 
-    def read(self, path: Path, given: Calibration) -> Readers:
+    def read(self, path: Path, calibration: Calibration) -> Readers:
         """Return what reads the only curve."""
         try:
-            return _curves(read_table, path, given)
+            return _curves(read_table, path, calibration)
         except csv.Error:
             raise StorageError(
                 f"{path}: is neither text, nor HDF5, nor a readable file of an instrument; "
@@ -65,9 +65,9 @@ class Arrays(Reader, title="named arrays"):
     suffixes: ClassVar[tuple[str, ...]] = (".h5", ".hdf5", ".nc", ".mat")
     takes_columns: ClassVar[bool] = True
 
-    def read(self, path: Path, given: Calibration) -> Readers:
+    def read(self, path: Path, calibration: Calibration) -> Readers:
         """Return what reads each curve by the name of its group."""
-        return _curves(read_tree, path, given)
+        return _curves(read_tree, path, calibration)
 
 
 def _curves(
@@ -77,20 +77,24 @@ def _curves(
     mapped = calibration.columns or {}
     tables, heads, stated = read(path, mapped)
     names = [name for head in heads if (name := head.name.lower()) in NAMES]
-    found = {role for columns in tables.values() for role in columns}
-    wanted = mapped or dict(zip(names, names, strict=True))
-    wrong = [name for name, text in wanted.items() if text.split()[0] not in found]
+    roles = {role for columns in tables.values() for role in columns}
+    roles_by_name = mapped or dict(zip(names, names, strict=True))
+    wrong = [name for name, text in roles_by_name.items() if text.split()[0] not in roles]
     known = Calibration(**{**stated, **calibration.model_dump(exclude_none=True)})
 
     def curve(label: str, columns: Columns) -> Measurement:
         if not wrong and not lacking(columns, known):
             own = known.model_copy(update={**stated, "sensitivity": known.sensitivity})
-            measured, given = from_columns(columns, own), calibration.spring_constant
-            if given is None and own.spring_constant and measured.stiffness != own.spring_constant:
-                first, other = own.spring_constant, measured.stiffness or np.nan
+            measured, spring_constant = from_columns(columns, own), calibration.spring_constant
+            if (
+                spring_constant is None
+                and own.spring_constant
+                and measured.stiffness != own.spring_constant
+            ):
+                first, second = own.spring_constant, measured.stiffness or np.nan
                 raise ConfigError(
                     f"{path}: states {readable(first, 'N/m')}, and its force is "
-                    f"{readable(other, 'N/m')} times its deflection; give the one that holds",
+                    f"{readable(second, 'N/m')} times its deflection; give the one that holds",
                     "spring_constant",
                 )
             return recalibrated(measured, calibration, is_own=bool(stated))

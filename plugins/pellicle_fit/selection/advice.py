@@ -87,12 +87,12 @@ def _of_input(answer: Answer) -> Iterator[Advice]:
     if CONTACT_POINT in selected.estimates and few:
         yield Advice(Remedy.BEGIN_EARLIER, {"rows": few[0]})
     for name, (least, most) in PLAUSIBLE.items():
-        if (found := answer.selected.estimates.get(name)) is None:
+        if (estimate := answer.selected.estimates.get(name)) is None:
             continue
         # The best value of an open interval is one of many.
-        low, high = found.low or 0.0, np.inf if found.high is None else found.high
+        low, high = estimate.low or 0.0, np.inf if estimate.high is None else estimate.high
         if low > most or high < least:
-            known = {"name": name, "value": found.value, "unit": found.unit}
+            known = {"name": name, "value": estimate.value, "unit": estimate.unit}
             yield Advice(Remedy.CHECK_UNITS, known)
 
 
@@ -100,7 +100,7 @@ def _of_options(
     answer: Answer, left_out: tuple[int, int] | None, config: FitConfig
 ) -> Iterator[Advice]:
     """Yield what another option of the fit would mend."""
-    flaws = {flaw for one in answer.judgements for flaw in one.flaws}
+    flaws = {flaw for judgement in answer.judgements for flaw in judgement.flaws}
     types = answer.selected.objective.explanation.types
     if (Flaw.DRIFT in flaws or "slope" in types) and config.baseline != "slope":
         yield Advice(Remedy.FIT_SLOPE)

@@ -59,7 +59,7 @@ def telling(target: Candidate, others: Sequence[Candidate]) -> tuple[Proposal | 
     to this and to the curve itself; the least χ² is what a measurement is worth.
     """
     best, most = None, 0.0
-    pairs = [(a, b) for other in others for a, b in ((target, other), (other, target))]
+    pairs = [(a, b) for rival in others for a, b in ((target, rival), (rival, target))]
     for proposal, measurement in measurements(target):
         worth, useless = np.inf, max(_USELESS, most)
         made: dict[Candidate, tuple[Curve, ...]] = {}
@@ -110,8 +110,8 @@ def measurements(fit: Candidate) -> Iterator[tuple[Proposal, Curve]]:
             yield Proposal(means, factor * high), to_depth
     for factor in (1 / 3, 3.0):
         if radius is not None and high <= _DEEPEST * factor * radius:
-            other = body.model_copy(update={"radius": factor * radius})
-            on_other = Curve(down, unknown, other, forth, inward)
+            tip = body.model_copy(update={"radius": factor * radius})
+            on_other = Curve(down, unknown, tip, forth, inward)
             yield Proposal(Means.RADIUS, factor * radius), on_other
 
 
@@ -126,12 +126,12 @@ def _misfit(
     values = guess.objective.values(guess.minimum.at).items()
     first = {name: value for (name, owner), value in values if not owner} | {CONTACT_POINT: 0.0}
     start = [slot.coordinate(first.get(slot.name, 0.0)) for slot in objective.slots]
-    (found,) = descend(objective, np.array([start]), steps=_ROUGH, goal=_NEEDED, enough=useless)
+    (minimum,) = descend(objective, np.array([start]), steps=_ROUGH, goal=_NEEDED, enough=useless)
     # What cannot be explained at all is worth nothing, too.
-    return found.chi_squared if np.isfinite(found.chi_squared) else 0.0
+    return minimum.chi_squared if np.isfinite(minimum.chi_squared) else 0.0
 
 
-def _foretold(truth: Candidate, other: Curve) -> tuple[Curve, ...]:
+def _foretold(truth: Candidate, planned_curve: Curve) -> tuple[Curve, ...]:
     """Return what an explanation predicts of the first curve again, and of another.
 
     They have no noise and touch at 0.
@@ -140,10 +140,10 @@ def _foretold(truth: Candidate, other: Curve) -> tuple[Curve, ...]:
     means, (point, *_) = curve.binned(_ROWS), truth.contact_points
     again = replace(means, position=means.base - point, stiffness=None, touch=None)
     # Each row of a forecast stands for as many as the curve has.
-    counts = np.full(other.position.size, curve.passes[0].size / _ROWS)
+    counts = np.full(planned_curve.position.size, curve.passes[0].size / _ROWS)
     known = replace(known, solid=known.solid.model_copy(update={CONTACT_POINT: 0.0}))
-    pair = again, replace(other, counts=counts)
-    return tuple(_predicted(known, one, curve) for one in pair)
+    pair = again, replace(planned_curve, counts=counts)
+    return tuple(_predicted(known, measurement, curve) for measurement in pair)
 
 
 def _predicted(known: Explanation, measurement: Curve, curve: Curve) -> Curve:

@@ -32,14 +32,14 @@ class Neighbour(NamedTuple):
     @classmethod
     def of_dict(cls, fit: Mapping[str, Any]) -> Neighbour:
         """Return the neighbour that the JSON data of a fit of one curve describe."""
-        explanations = {frozenset(one["effects"]): one for one in fit["explanations"]}
+        explanations = {frozenset(row["effects"]): row for row in fit["explanations"]}
         return cls(
             fit["verdict"] != Verdict.UNDESCRIBED.value,
-            frozenset(types for types, one in explanations.items() if one["tied"]),
-            frozenset(t for t, one in explanations.items() if one["delta_aic"] > RULED_OUT),
+            frozenset(types for types, row in explanations.items() if row["tied"]),
+            frozenset(t for t, row in explanations.items() if row["delta_aic"] > RULED_OUT),
             {
-                types: {name: e["value"] for name, e in one["parameters"].items()}
-                for types, one in explanations.items()
+                types: {name: e["value"] for name, e in row["parameters"].items()}
+                for types, row in explanations.items()
             },
         )
 
@@ -67,4 +67,4 @@ class Neighbour(NamedTuple):
         if not np.isfinite(at).all():
             return []
         others = (objective.at_values(of.objective.values(of.minimum.at)) for of in parts)
-        return [at, *(np.where(np.isnan(other), at, other) for other in others)]
+        return [at, *(np.where(np.isnan(coordinates), at, coordinates) for coordinates in others)]

@@ -128,21 +128,24 @@ class Answer:
         tied = [fit for fit in tied if fit not in self.not_held]
         if name == MODULUS:
             tied = [fit for fit in tied if fit.holds_modulus]
-        found = [fit.estimates[name] for fit in tied if name in fit.estimates]
+        values = [fit.estimates[name] for fit in tied if name in fit.estimates]
         none = Estimate(0.0, None, None, "N/m", held=True)
         own = self.selected.parameters.get(name, none)
-        if not found:
+        if not values:
             another = (End.ANOTHER, End.ANOTHER)
             return own if tied or own.held else replace(own, low=None, high=None, ends=another)
-        lows = [e.low for e in found if e.low is not None]
-        highs = [e.high for e in found if e.high is not None]
+        lows = [e.low for e in values if e.low is not None]
+        highs = [e.high for e in values if e.high is not None]
         low = min(lows) if len(lows) == len(tied) else None
-        high = max(highs) if len(highs) == len(found) else None
-        ends = _over([e.ends[0] for e in found], len(tied)), _over([e.ends[1] for e in found])
+        high = max(highs) if len(highs) == len(values) else None
+        ends = (
+            _over([e.ends[0] for e in values], len(tied)),
+            _over([e.ends[1] for e in values]),
+        )
         # Of what some of them lack, and need not lack, no value is one that all allow.
-        shared = len(found) == len(tied) or self.verdict is Verdict.NO_SIGN
-        value = common_value(found) if shared else np.nan
-        return Estimate(value, low, high, found[0].unit, ends=ends)
+        shared = len(values) == len(tied) or self.verdict is Verdict.NO_SIGN
+        value = common_value(values) if shared else np.nan
+        return Estimate(value, low, high, values[0].unit, ends=ends)
 
 
 def _over(ends: Sequence[End], count: int = 0) -> End:
@@ -180,12 +183,12 @@ def agreement_of(fit: Candidate) -> Agreement:
     values, rises = objective.values(fit.minimum.at), []
     for i in range(count):
         names = ("curves", "noise", "memory")
-        one = replace(objective, **{name: getattr(objective, name)[i : i + 1] for name in names})
+        alone = replace(objective, **{name: getattr(objective, name)[i : i + 1] for name in names})
         # A bead's own is that of the first curve that has the bead.
         of = (None, objective.beads[i], i)
         own = {(n, None if c is None else 0): v for (n, c), v in values.items() if c in of}
-        start = one.at_values(own)
-        rises.append(one.chi_squared(start) - one.minimise(start).chi_squared)
+        start = alone.at_values(own)
+        rises.append(alone.chi_squared(start) - alone.minimise(start).chi_squared)
     return Agreement(max(sum(rises), 0.0), shared * (count - 1), int(np.argmax(rises)))
 
 
@@ -236,13 +239,23 @@ def answer(
     common = (*common, *(effect for effect in model if effect is not target))
     question = Question(Solid.model_validate(dict(fix or {})), target, common, sets)
     candidates, of_target = question.candidates(), question.of_target
-    excused = {types: why for types, one in candidates.items() if (why := one.excuse(curves))}
+    excused = {
+        types: why
+        for types, explanation in candidates.items()
+        if (why := explanation.excuse(curves))
+    }
     if of_target in excused:
         raise ConfigError(f"cannot be fitted to this curve: {excused[of_target]}", "model")
-    candidates = {types: one for types, one in candidates.items() if types not in excused}
-    spared = frozenset[Types].intersection(*(one.ruled_out for one in like)) if like else NONE
+    candidates = {
+        types: explanation for types, explanation in candidates.items() if types not in excused
+    }
+    spared = (
+        frozenset[Types].intersection(*(neighbour.ruled_out for neighbour in like))
+        if like
+        else NONE
+    )
     not_weighed = [t for t in candidates if t in spared and t not in (NONE, of_target)]
-    weighed = {t: one for t, one in candidates.items() if t not in not_weighed}
+    weighed = {t: explanation for t, explanation in candidates.items() if t not in not_weighed}
     fits = dict(comparison(of_target, weighed, curves, like[0] if like else None))
     best = best_of(fits.values())
     threshold = threshold_of(min(checked.noise.freedom for checked in best.judgements))
@@ -250,7 +263,7 @@ def answer(
     decided = decision(fits, of_target, inadequate=inadequate, margin=margin)
     selected = choice(fits, of_target, decided)
     undescribed = decided.verdict is Verdict.UNDESCRIBED
-    if not_weighed and not any(one.has(selected, not undescribed) for one in like):
+    if not_weighed and not any(explanation.has(selected, not undescribed) for explanation in like):
         return answer(curves, model, sets, common=common, fix=fix, uncertainty=uncertainty)
     agreement = agreement_of(fits[selected])
     threshold *= agreement.factor
@@ -294,7 +307,7 @@ def with_estimates(
     if extra:
         objective, at = fit.beside(extra)
         minimum = objective.minimise(at)
-    minimum, found = estimates(objective, minimum, threshold * max(1.0, accuracy) ** 2, names)
+    minimum, intervals = estimates(objective, minimum, threshold * max(1.0, accuracy) ** 2, names)
     if extra:
-        return replace(fit, estimates=found, weighed=(objective, minimum))
-    return replace(fit, estimates=found, minimum=minimum)
+        return replace(fit, estimates=intervals, weighed=(objective, minimum))
+    return replace(fit, estimates=intervals, minimum=minimum)

@@ -62,7 +62,7 @@ class Question:
 
     def candidates(self) -> dict[Types, Explanation]:
         """Return the explanations that are compared, by their types."""
-        found: dict[Types, Explanation] = {}
+        explanations: dict[Types, Explanation] = {}
         common = {effect.type_name for effect in self.common}
         sides: list[tuple[Effect, ...]] = [(), (self.target,)] if self.target else [()]
         for rival in ((), *self.rivals):
@@ -71,11 +71,11 @@ class Question:
                 own = side + tuple(e for e in rival if e.type_name not in taken)
                 types = frozenset(effect.type_name for effect in own)
                 # What derives from an effect that is kept is another form of it, in its place.
-                other = tuple(
+                remaining = tuple(
                     k for k in self.common if not any(isinstance(e, type(k)) for e in own)
                 )
-                found.setdefault(types, Explanation(self.solid, other + own))
-        return found
+                explanations.setdefault(types, Explanation(self.solid, remaining + own))
+        return explanations
 
 
 def comparison(
@@ -101,12 +101,12 @@ def comparison(
     )
     simple = at_common_noise({types: fit.polished() for types, fit in simple.items()})
     best = best_of(simple.values())
-    if not memory and any(found := tuple(checked.memory for checked in best.judgements)):
-        fits = comparison(of_target, candidates, curves, like, found)
-        other = best_of(fits.values())
+    if not memory and any(memories := tuple(checked.memory for checked in best.judgements)):
+        fits = comparison(of_target, candidates, curves, like, memories)
+        best_with_memory = best_of(fits.values())
         # What a wrong explanation leaves before contact may look like noise with a memory.
-        if all(checked.describes for checked in other.judgements) and any(
-            checked.memory for checked in other.without_memory.judgements
+        if all(checked.describes for checked in best_with_memory.judgements) and any(
+            checked.memory for checked in best_with_memory.without_memory.judgements
         ):
             return fits
     fits = _compared(candidates, of_target, simple, means, like)
@@ -185,14 +185,14 @@ def _sought(
 
 def _nearest_sought(fits: Fits, of_target: Types) -> Fits:
     """Return explanations of which the best without what is asked for is sought to the end."""
-    found, sought = dict(fits), set[Types]()
+    explanations, sought = dict(fits), set[Types]()
     while True:
         nearest = best_of(
-            fit for fit in found.values() if not of_target or not of_target <= fit.types
+            fit for fit in explanations.values() if not of_target or not of_target <= fit.types
         )
         if nearest.types in sought:
-            return found
-        found[nearest.types] = nearest.polished()
+            return explanations
+        explanations[nearest.types] = nearest.polished()
         sought.add(nearest.types)
 
 
@@ -262,9 +262,9 @@ def _restarted(fit: Candidate, of_target: Types, fits: Fits) -> Candidate:
     # What is no better than its part is no better place to start from.
     lower = fit.minimum.chi_squared - _LOWER
     wholes = [
-        other
-        for types, other in fits.items()
-        if fit.types and fit.types < types and other.minimum.chi_squared < lower
+        larger
+        for types, larger in fits.items()
+        if fit.types and fit.types < types and larger.minimum.chi_squared < lower
     ]
     if not wholes:
         return fit
@@ -273,5 +273,5 @@ def _restarted(fit: Candidate, of_target: Types, fits: Fits) -> Candidate:
     goal = min(
         _end(fit.types, of_target, fits, _FAR) - fit.objective.criterion(0.0), fit.chi_squared
     )
-    found = _least(fit.objective, [*at], goal - _LOWER, fits[of_target])
-    return min(fit, replace(fit, minimum=found), key=lambda one: one.minimum.chi_squared)
+    least = _least(fit.objective, [*at], goal - _LOWER, fits[of_target])
+    return min(fit, replace(fit, minimum=least), key=lambda trial: trial.minimum.chi_squared)

@@ -66,12 +66,12 @@ def simulated_curve(
     folder = folder / "force-curves" / hashlib.sha256(runs.encode()).hexdigest()[:16]
     # Once all runs have converged they are deleted, so a table without them is whole.
     if (folder / "study.h5").exists() and not (folder / "runs").exists():
-        found = results.table(folder / "study.h5")
+        results_table = results.table(folder / "study.h5")
     else:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("error", ConvergenceWarning)
-                found = run_study(study, folder, progress=progress)
+                results_table = run_study(study, folder, progress=progress)
         except ConvergenceWarning as warning:
             raise ConvergenceError(
                 f"the force curve needs the study in {folder}: {warning}; another number of "
@@ -79,7 +79,7 @@ def simulated_curve(
             ) from None
         shutil.rmtree(folder / "runs")
     # Each contact on a grid of its own, and on one of half the cells.
-    forces = found["force"].values.reshape(2, depths.size, _RATIOS.size)
+    forces = results_table["force"].values.reshape(2, depths.size, _RATIOS.size)
     if not (forces > 0).all():
         raise ConvergenceError("some contacts of the study carry no force; give more grid points")
     accuracy = float(np.max(np.abs(forces[1] / forces[0] - 1)))

@@ -60,8 +60,8 @@ def check_effect(effect: Effect) -> None:
 
 def stands_in_one_place(effect: Effect) -> str:
     """The class derives from one of Bends, Responds, Adds, Yields and Records."""
-    found = [place.__name__ for place in _PLACES if isinstance(effect, place)]
-    return "" if len(found) == 1 else f"it derives from {' and '.join(found) or 'Effect alone'}"
+    places = [place.__name__ for place in _PLACES if isinstance(effect, place)]
+    return "" if len(places) == 1 else f"it derives from {' and '.join(places) or 'Effect alone'}"
 
 
 def starts_lie_within_limits(effect: Effect) -> str:

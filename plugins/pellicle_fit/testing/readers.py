@@ -22,17 +22,17 @@ _DAMAGES = 40
 _LETTERS = "[]*?!0123456789"
 
 
-def check_reader(reader: Reader, *paths: Path, given: Calibration | None = None) -> None:
+def check_reader(reader: Reader, *paths: Path, calibration: Calibration | None = None) -> None:
     """Check that a reader keeps its contract, on files that it reads.
 
     Besides the rules of all components: its files are told from others; curves have labels, numbers
-    and SI units; and a file that is cut, damaged or of another kind is an error in words. ``given``
-    is the calibration that the files need.
+    and SI units; and a file that is cut, damaged or of another kind is an error in words. The
+    files need the ``calibration``.
     """
-    check(reader, Reader, rules_of(__name__), paths, given or Calibration())
+    check(reader, Reader, rules_of(__name__), paths, calibration or Calibration())
 
 
-def tells_its_files(reader: Reader, paths: Sequence[Path], given: Calibration) -> str:
+def tells_its_files(reader: Reader, paths: Sequence[Path], calibration: Calibration) -> str:
     """sniff() is true of its files, and returns a bool for any other, or raises an OSError."""
     for path in paths:
         if reader.sniff(path) is not True and not reader.takes_columns:
@@ -43,14 +43,14 @@ def tells_its_files(reader: Reader, paths: Sequence[Path], given: Calibration) -
     return "" if isinstance(sniffed, bool) else f"sniff() returns {sniffed!r}"
 
 
-def reads_curves(reader: Reader, paths: Sequence[Path], given: Calibration) -> str:
+def reads_curves(reader: Reader, paths: Sequence[Path], calibration: Calibration) -> str:
     """read() returns functions by labels, empty for one curve; each returns the same curve twice.
 
     Positions, forces and times are finite rows of one length, and no file is changed.
     """
     for path in paths:
         content = path.read_bytes()
-        curves = reader.read(path, given)
+        curves = reader.read(path, calibration)
         labels = list(curves) if isinstance(curves, Mapping) else []
         if not labels or not all(isinstance(label, str) for label in labels):
             return f"read({path.name}) returns {curves!r}, which maps no texts"
@@ -61,19 +61,21 @@ def reads_curves(reader: Reader, paths: Sequence[Path], given: Calibration) -> s
             if not isinstance(first, Measurement):
                 return f"curve {label!r} of {path.name} is {first!r}; `curve_of` makes one"
             for name in ("position", "force", "time"):
-                one, two = getattr(first, name), getattr(second, name)
-                if one is None and name == "time":
+                first_array, two = getattr(first, name), getattr(second, name)
+                if first_array is None and name == "time":
                     continue
-                if one.shape != (first.force.size,) or not np.isfinite(one).any():
-                    return f"{name} of curve {label!r} of {path.name} is {one!r}"
-                if not np.array_equal(one, two, equal_nan=True):
+                if first_array.shape != (first.force.size,) or not np.isfinite(first_array).any():
+                    return f"{name} of curve {label!r} of {path.name} is {first_array!r}"
+                if not np.array_equal(first_array, two, equal_nan=True):
                     return f"{name} of curve {label!r} of {path.name} differs the second time"
         if path.read_bytes() != content:
             return f"{path.name} was changed"
     return ""
 
 
-def refuses_other_files_in_words(reader: Reader, paths: Sequence[Path], given: Calibration) -> str:
+def refuses_other_files_in_words(
+    reader: Reader, paths: Sequence[Path], calibration: Calibration
+) -> str:
     """A file that is empty, cut, damaged or of another kind raises nothing but PellicleError."""
     contents = [b"", b"\0" * 4096, b"no curve\n"]
     random = np.random.default_rng(0)
@@ -89,7 +91,7 @@ def refuses_other_files_in_words(reader: Reader, paths: Sequence[Path], given: C
         with _copy(reader, content) as copy, suppress(PellicleError):
             with suppress(OSError):
                 reader.sniff(copy)
-            for curve in reader.read(copy, given).values():
+            for curve in reader.read(copy, calibration).values():
                 curve()
     return ""
 

@@ -58,14 +58,14 @@ def advice_of_population(rows: Sequence[Row]) -> list[str]:
     for steps in sorted(kinds.values(), key=len, reverse=True)[:_STEPS]:
         (first, step), *others = steps.items()
         of = f"all {fitted} curves" if len(steps) == fitted > 1 else listed([*steps], most=_NAMES)
-        example = "" if all(one["why"] == step["why"] for _, one in others) else f"{first}: "
+        example = "" if all(entry["why"] == step["why"] for _, entry in others) else f"{first}: "
         lines.append(f"{of}: {step['do']} ({example}{step['why']})")
     return lines
 
 
 def by_text(pairs: Sequence[tuple[str, str]]) -> list[str]:
     """Return each text once, behind the curves that it is of."""
-    found = dict[str, list[str]]()
+    curves_of_text = dict[str, list[str]]()
     for text, name in pairs:
-        found.setdefault(text, []).append(name)
-    return [f"{first_of(names)}: {text}" for text, names in found.items()]
+        curves_of_text.setdefault(text, []).append(name)
+    return [f"{first_of(names)}: {text}" for text, names in curves_of_text.items()]

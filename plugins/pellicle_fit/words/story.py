@@ -52,10 +52,10 @@ def story(fit: Record, *, si: bool = False) -> list[str]:
 
 def _if_present(fit: Record, si: bool) -> Iterator[str]:
     """Yield what is known of what was asked for, and the modulus beside it, if it were there."""
-    if found := fit.if_present:
-        hidden = {"reduced_modulus"} if "youngs_modulus" in found else set()
-        ordered = sorted(found, key=lambda name: name.endswith("_modulus"))
-        parts = (f"{words(n)} {in_figures(found[n], si=si)}" for n in ordered if n not in hidden)
+    if present := fit.if_present:
+        hidden = {"reduced_modulus"} if "youngs_modulus" in present else set()
+        ordered = sorted(present, key=lambda name: name.endswith("_modulus"))
+        parts = (f"{words(n)} {in_figures(present[n], si=si)}" for n in ordered if n not in hidden)
         yield f"if {fit.data['target']['words']} were there: {', '.join(parts)}"
 
 
@@ -132,7 +132,7 @@ def _reason(answer: Answer) -> str:
     """Return why that is the verdict; empty if its words say it."""
     question = answer.question
     if answer.verdict is Verdict.UNDESCRIBED:
-        flaws = {flaw for one in answer.judgements if not one.describes for flaw in one.flaws}
+        flaws = {flaw for check in answer.judgements if not check.describes for flaw in check.flaws}
         untried = listed([words_of_types(question, types) for types in answer.untried])
         why = next(flaw.value for flaw in Flaw if flaw in flaws)
         return f"{why}; {untried} could not be tried" if untried else why
@@ -146,20 +146,20 @@ def _reason(answer: Answer) -> str:
 
 def _named(fits: Sequence[Candidate]) -> str:
     """Return explanations in words, but for those that only add to another of them."""
-    simplest = [fit for fit in fits if not any(other.types < fit.types for other in fits)]
+    simplest = [fit for fit in fits if not any(rival.types < fit.types for rival in fits)]
     return listed([*map(words_of, simplest)], "or", _RIVALS)
 
 
 def agreement(answer: Answer, names: Sequence[str]) -> str:
     """Return whether several curves agree on what they share; empty for one."""
-    found = answer.agreement
-    if not found.degrees:
+    verdict = answer.agreement
+    if not verdict.degrees:
         return ""
-    if found.factor == 1:
+    if verdict.factor == 1:
         return "the curves agree on what they share"
-    wider = decimal(np.sqrt(found.factor), 2)
+    wider = decimal(np.sqrt(verdict.factor), 2)
     return (
-        f"the curves do not agree on what they share, {names[found.worst]} least of all; the "
+        f"the curves do not agree on what they share, {names[verdict.worst]} least of all; the "
         f"intervals are {wider} times wider for it"
     )
 

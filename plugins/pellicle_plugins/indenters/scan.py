@@ -85,17 +85,17 @@ def chosen(channels: Sequence[Channel], name: str | None, path: Path) -> Channel
     return channel
 
 
-def height_scale(channel: Channel, given: float | None, path: Path) -> float:
-    """Return the length that a value of 1 stands for [m], as stated or else ``given``."""
+def height_scale(channel: Channel, unit_length: float | None, path: Path) -> float:
+    """Return the length that a value of 1 stands for [m], as stated or else as the user says."""
     if channel.unit is None:
-        if given is None:
+        if unit_length is None:
             raise ConfigError(
                 f"is missing, and {path} does not state the unit of its heights; give the "
                 "length that 1 stands for: '1 um'",
                 "unit",
             )
-        return given
-    if given is not None:
+        return unit_length
+    if unit_length is not None:
         raise ConfigError(f"{path} states its own unit, {channel.unit}; leave this out", "unit")
     if (scale := metres(channel.unit)) is None:
         raise ConfigError(f"{path} is in {channel.unit}, which is not a unit of length", "path")
@@ -103,17 +103,17 @@ def height_scale(channel: Channel, given: float | None, path: Path) -> float:
 
 
 def edge_lengths(
-    channel: Channel, given: tuple[float, float] | None, scale: float, path: Path
+    channel: Channel, lengths: tuple[float, float] | None, scale: float, path: Path
 ) -> tuple[float, float]:
-    """Return the edge lengths [m], as stated or else ``given``; a value of 1 is ``scale`` [m]."""
+    """Return the edge lengths [m], as stated or else ``lengths``; a value of 1 is ``scale`` [m]."""
     if not channel.edges:
-        if given is None:
+        if lengths is None:
             raise ConfigError(
                 f"is missing, and {path} does not state it; give the edge lengths of the scan, "
                 "such as ['80 um', '60 um']",
                 "size",
             )
-        return given
+        return lengths
     size = []
     for edge, unit in channel.edges:
         if (in_metres := metres(unit) if unit else scale) is None:
@@ -124,6 +124,6 @@ def edge_lengths(
             )
         size.append(edge * in_metres)
     x, y = size
-    if given is not None:
+    if lengths is not None:
         raise ConfigError(f"{path} states its own size, {x:g} × {y:g} m; leave this out", "size")
     return x, y

@@ -88,15 +88,15 @@ class SelfAffine(Indenter):
         )
         q = np.hypot(2 * pi / period_x * m, 2 * pi / period_y * n)
         # A real surface has conjugate coefficients at −q.
-        kept = (q >= q_low) & (q <= q_high) & ((n > 0) | (m > 0))
-        if not kept.any():
+        in_range = (q >= q_low) & (q <= q_high) & ((n > 0) | (m > 0))
+        if not in_range.any():
             raise ConfigError(
                 f"no wavelength between {readable(self.cutoff_wavelength, 'm')} and "
                 f"{readable(longest, 'm', 4)} fits the domain of {readable(period_x, 'm')} × "
                 f"{readable(period_y, 'm')}; widen the range or the domain",
                 "roll_off_wavelength",
             )
-        m, n, q = m[kept], n[kept], q[kept]
+        m, n, q = m[in_range], n[in_range], q[in_range]
         amplitude = q ** -(self.hurst + 1)
         amplitude *= self.rms_height / np.sqrt(2 * np.sum(amplitude**2))
         return _Series(m, n, amplitude * np.exp(1j * _phases(m, n, self.seed)))

@@ -57,9 +57,9 @@ def text_channel(name: str, table: TextTable, path: Path) -> Channel:
     spip = any(line.startswith("# File Format = ASCII") for line in table.header)
     units: list[str | None] = ["nm" if spip else None]
     stated: list[Edge] = []
-    for axis, other, count in zip("xy", "yx", heights.shape, strict=True):
+    for axis, axis_across, count in zip("xy", "yx", heights.shape, strict=True):
         edge = _quantity(entries, f"size {axis}")
-        if edge is None and (pitch := _quantity(entries, f"pitch {axis}", f"pitch {other}")):
+        if edge is None and (pitch := _quantity(entries, f"pitch {axis}", f"pitch {axis_across}")):
             edge = pitch[0] * count, pitch[1]
         units.append((edge and edge[1]) or _word(entries, f"unit {axis}") or units[-1])
         if edge:

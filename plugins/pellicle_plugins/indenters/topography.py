@@ -215,9 +215,9 @@ class Topography(FromHeights):
             heights = np.where(measured, heights, np.ma.getdata(filled) + trend)
         levelled = heights - fitted(degree)
         if is_periodic:
-            other: _Level = "tilt" if degree < 1 else "mean"
-            rest = heights - fitted(_LEVELS.index(other) - 1)
-            self._warn_of_seam({level: levelled, other: rest})
+            next_level: _Level = "tilt" if degree < 1 else "mean"
+            rest = heights - fitted(_LEVELS.index(next_level) - 1)
+            self._warn_of_seam({level: levelled, next_level: rest})
         return -levelled if self.invert else levelled
 
     def _warn_of_seam(self, levelled: dict[_Level, Array]) -> None:
@@ -226,7 +226,7 @@ class Topography(FromHeights):
         ``levelled`` are the heights [m] by levels, first those that are pressed. Any two lines of a
         periodic surface may be its edges: their mean heights differ as those of all neighbours do.
         """
-        (level, heights), (other, rest) = levelled.items()
+        (level, heights), (second, rest) = levelled.items()
         for axis, name in enumerate("xy"):
             step, step_of_rest = (
                 float(np.sqrt(np.mean((h.take(0, axis) - h.take(-1, axis)) ** 2)))
@@ -234,11 +234,11 @@ class Topography(FromHeights):
             )
             lines = heights.mean(axis=1 - axis)
             is_left = abs(lines[0] - lines[-1]) > _STEPS * np.abs(np.diff(lines)).max()
-            is_made = other == "mean" and step - step_of_rest > 0.01 * heights.std()
+            is_made = second == "mean" and step - step_of_rest > 0.01 * heights.std()
             if is_left or is_made:
                 warnings.warn(
                     f"{self.path} is not periodic along {name} with level = {level!r}: its edges "
-                    f"meet in a step of {readable(step, 'm', 2)} (rms), with level = {other!r} of "
+                    f"meet in a step of {readable(step, 'm', 2)} (rms), with level = {second!r} of "
                     f"{readable(step_of_rest, 'm', 2)}; take the level that leaves none, or "
                     'press it on grid.boundary = "free"',
                     stacklevel=2,

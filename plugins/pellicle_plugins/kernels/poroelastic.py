@@ -183,5 +183,5 @@ def draining_series(surface: Surface) -> tuple[tuple[float, ...], tuple[float, .
     values = np.append(drained_part(surface, theta), _EXACT / 2)
     shares = lsq_linear(terms, values, (0.0, np.inf), method="bvls", tol=1e-13).x
     shares *= 0.5 / shares.sum()
-    kept = shares > 0
-    return tuple(shares[kept].tolist()), tuple(rates[kept].tolist())
+    positive = shares > 0
+    return tuple(shares[positive].tolist()), tuple(rates[positive].tolist())

@@ -25,15 +25,15 @@ class OneOrTwo(Quantity):
             return super().__call__(value)
         if len(value) != 2:
             raise ValueError(f"{shown(value)} is not allowed; give one value, or a list of two")
-        one, two = map(super().__call__, value)
-        return one if one == two else (one, two)
+        first, second = map(super().__call__, value)
+        return first if first == second else (first, second)
 
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        one = super().__get_pydantic_json_schema__(schema, handler)
-        two = {"type": "array", "items": one, "minItems": 2, "maxItems": 2}
-        return {"anyOf": [*one["anyOf"], two], "unit": self.unit}
+        single = super().__get_pydantic_json_schema__(schema, handler)
+        pair = {"type": "array", "items": single, "minItems": 2, "maxItems": 2}
+        return {"anyOf": [*single["anyOf"], pair], "unit": self.unit}
 
 
 Tensions = Annotated[float | tuple[float, float], OneOrTwo("N/m", at_least=0)]

@@ -139,9 +139,9 @@ class AdhesiveCurve(TableFigure):
         strongest = -min((curve.force.min() for curve in curves), default=0.0)
         if strongest > 0:
             # Curves are shown up to a push as large as the strongest pull.
-            seen = np.concatenate([curve.depth[curve.force <= strongest] for curve in curves])
-            margin = 0.05 * np.ptp(seen)
-            depth = replace(depth, limits=(seen.min() - margin, seen.max() + margin))
+            depths = np.concatenate([curve.depth[curve.force <= strongest] for curve in curves])
+            margin = 0.05 * np.ptp(depths)
+            depth = replace(depth, limits=(depths.min() - margin, depths.max() + margin))
             force = replace(force, limits=(-1.1 * strongest, 1.1 * strongest))
         problems = dict.fromkeys(d.status for d in drawn if d.curve is None)
         note = "\n".join(textwrap.fill(problem, _LINE) for problem in problems)

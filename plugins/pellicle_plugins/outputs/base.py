@@ -101,18 +101,18 @@ class TableFigure(Output):
     def shown(self, runs: Runs) -> Runs:
         """Return the runs that `where` leaves."""
         table = runs.table
-        for name, wanted in self.where.items():
+        for name, entry in self.where.items():
             require_axes(filter(lambda axis: axis != "step", table.coords), [name], "where")
-            axis, same = table[name], table[name].values == wanted
+            axis, same = table[name], table[name].values == entry
             if axis.dtype.kind in "if":
                 try:
-                    value = Quantity(str(axis.attrs.get("units", "1")))(wanted)
+                    value = Quantity(str(axis.attrs.get("units", "1")))(entry)
                 except ValueError as error:
                     raise ConfigError(f"{name}: {error}", "where") from None
                 same = np.isclose(axis.values, value, rtol=1e-9, atol=0.0)
             if not np.any(same):
                 values = column_of(axis).listing
-                raise ConfigError(f"{wanted!r} is no value of {name}, which has {values}", "where")
+                raise ConfigError(f"{entry!r} is no value of {name}, which has {values}", "where")
             table = table.isel({axis.dims[0]: int(np.argmax(same))})
         return StoredRuns(table, runs.open, runs.configuration)
 
@@ -151,10 +151,10 @@ class TableFigure(Output):
                 yield name, without_round_off(run.sel(step=number))
 
 
-def require_axes(known: Iterable[object], chosen: Iterable[str], field: str) -> None:
+def require_axes(known: Iterable[object], axes: Iterable[str], field: str) -> None:
     """Refuse an axis that is not among those of the table."""
     names = [*map(str, known)]
-    for axis in chosen:
+    for axis in axes:
         if axis not in names:
             suggestion = nearest(axis, names)
             raise ConfigError(f"{axis!r} is not an axis of the table; {suggestion}", field)

@@ -191,8 +191,8 @@ class Curves(TableFigure):
         y_axis, names = self._y_axis(ys, table)
         series = list(self._series(runs, [x, *ys], names, by, panels))
         series += self._legend(table, names, by)
-        series += [one for panel in range(count) for one in self._published(panel)]
-        if self.over is not None and any(one.low is not None for one in series):
+        series += [published for panel in range(count) for published in self._published(panel)]
+        if self.over is not None and any(published.low is not None for published in series):
             band = Series(_NONE, _NONE, legend=_SPREADS[self.spread], low=_NONE, high=_NONE)
             series.append(replace(band, look=Look(None)))
         titles = [label(None, table.isel(cell), panels, table) for cell in along(table, panels)]
@@ -263,8 +263,8 @@ class Curves(TableFigure):
                 points = replace(points, low=None, high=None)
             yield replace(points, **shown, name=name, legend=legend, look=look)
             if self.extrapolate:
-                for one in limit_of(_at(x, point), points, name, look.hue):
-                    yield replace(one, **shown)
+                for limit in limit_of(_at(x, point), points, name, look.hue):
+                    yield replace(limit, **shown)
             if reference:
                 at_point = (_at(of_reference[index], point) for index in (0, number + 1))
                 points = points_at(part, *at_point)
@@ -295,8 +295,8 @@ class Curves(TableFigure):
             return label(self.label, table.isel(point), (), table)
         name = label(self.label, table.isel({by[0]: point[by[0]]}), by[:1], table)
         if others := [*by[1:], *panels]:
-            other = label(None, table.isel(point), others, table)
-            name = Label(name.words, f"{name.key}, {other.key}")
+            legend_of_others = label(None, table.isel(point), others, table)
+            name = Label(name.words, f"{name.key}, {legend_of_others.key}")
         return name
 
     def _legend(self, table: Dataset, names: Sequence[str], by: Sequence[str]) -> Iterator[Series]:
@@ -315,14 +315,14 @@ class Curves(TableFigure):
             yield Series(_NONE, _NONE, legend="semi-analytic", look=Look(None), role="reference")
 
     def _published(self, panel: int) -> Iterator[Series]:
-        for number, other in enumerate(self.published):
-            look = Look(None, 0 if other.style == "line" else None, number)
+        for number, table in enumerate(self.published):
+            look = Look(None, 0 if table.style == "line" else None, number)
             yield Series(
-                np.array(other.x),
-                np.array(other.y),
-                key=other.label,
+                np.array(table.x),
+                np.array(table.y),
+                key=table.label,
                 name="published",
-                legend=other.label,
+                legend=table.label,
                 look=look,
                 role="published",
                 panel=panel,

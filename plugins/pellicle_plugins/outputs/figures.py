@@ -128,8 +128,8 @@ def over_path(result: Result) -> Chart:
     data, series = result.dataset, list[Series]()
     x = "time" if has_times(data) else prescribed_variable(data)
     for number, name in enumerate(_OF_LOAD):
-        one = _series(data, x, name, Look(number, number))
-        series.append(replace(one, legend=column_of(data[name]).words, panel=number // 2))
+        curve = _series(data, x, name, Look(number, number))
+        series.append(replace(curve, legend=column_of(data[name]).words, panel=number // 2))
     axes = [Axis("height, depth", "m", limits=(0.0, None)), _axis(data["ridge_width"])]
     return Chart(_axis(data[x]), axes, series, data.attrs["title"], heights=(2, 1), hues=3)
 
@@ -157,8 +157,8 @@ def study_curves(runs: Runs, variable: str) -> Chart:
     for axis in rest[:1]:
         if (count := table.sizes[axis]) > _MOST_NAMED:
             table = table.isel({axis: slice(None, None, -(-count // _MOST_NAMED))})
-            chosen = f"{table.sizes[axis]} of {count} values"
-            remarks.append(f"{chosen} of {column_of(table[axis]).words}")
+            selection = f"{table.sizes[axis]} of {count} values"
+            remarks.append(f"{selection} of {column_of(table[axis]).words}")
     panels = [axis for axis in rest[1:] if axis not in seeds]
     while prod(table.sizes[axis] for axis in panels) > MOST_PANELS:
         axis = panels.pop()

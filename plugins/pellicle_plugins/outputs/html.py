@@ -112,15 +112,15 @@ class Html(Output):
         self, result: Result, configuration: dict[str, Any], runs: Runs
     ) -> list[Section]:
         data = result.dataset
-        maps, chosen = self._maps_of_steps(result)
+        maps, mapped_steps = self._maps_of_steps(result)
         step_shown = show.default_step(data) % data.sizes["step"]
         first = sentence_of_step(data, step_shown)
         label = label_of_step(data, step_shown)
         section = cross_section(data.isel(step=step_shown))
         setup = picture(section, show.sentences.caption_of_setup(configuration, label))
         aim = aim_of_path(data, result.path_summary)
-        lead, rest = (aim, first) if aim else (first, range_of_path(data))
-        in_short = [Text(lead, lead=True), *([Text(rest)] if rest else [])]
+        opening, rest = (aim, first) if aim else (first, range_of_path(data))
+        in_short = [Text(opening, lead=True), *([Text(rest)] if rest else [])]
         of_steps, off = show.tables.all_steps(data), np.zeros(1, dtype=bool)
         if not has_load(data):
             off = data["contact_area"].values == 0
@@ -132,8 +132,8 @@ class Html(Output):
         return [
             Section("In short", [*in_short, Notice(*show.sentences.status_of_run(result))]),
             Section("Maps", [maps]),
-            Section("Curves", curves_of_run(result, chosen, maps.begin)),
-            Section("Outputs", [*curves_of_outputs(runs, configuration, chosen)]),
+            Section("Curves", curves_of_run(result, mapped_steps, maps.begin)),
+            Section("Outputs", [*curves_of_outputs(runs, configuration, mapped_steps)]),
             Section("Numbers", numbers),
             Section("Set-up", [setup, show.tables.inputs_of_run(configuration)]),
         ]
@@ -143,8 +143,8 @@ class Html(Output):
         rows, names_of_runs = list(runs_of(table)), show.sentences.run_names(table)
         frames, setups = dict[int, Frame](), list[Picture]()
         solved = [index for index, row in enumerate(rows) if progress_of(row)[0]]
-        chosen, mapped, frame_of = self._mapped(table, len(solved))
-        for index in (solved[number] for number in chosen):
+        mapped_runs, mapped, frame_of = self._mapped(table, len(solved))
+        for index in (solved[number] for number in mapped_runs):
             try:
                 run = runs.open(rows[index]["run"].item())
             except StorageError:
@@ -157,12 +157,12 @@ class Html(Output):
                 caption = show.sentences.caption_of_setup(first_run, label)
                 setups.append(picture(cross_section(step), caption))
         sentence = sentence_of_study(table, len(rows))
-        lead = [Text(sentence, lead=True)] if sentence else []
+        opening = [Text(sentence, lead=True)] if sentence else []
         caption = caption_of_runs(table, len(frames))
         maps = Maps(caption, "run", mapped, list(frames.values()))
         numbers = [show.tables.runs(table, mapped=list(frames)), *show.tables.paths_of_runs(table)]
         return [
-            Section("In short", [*lead, Notice(*show.sentences.status_of_study(table))]),
+            Section("In short", [*opening, Notice(*show.sentences.status_of_study(table))]),
             Section("Maps", [maps] if frames else []),
             Section("Curves", [*curves_of_study(runs)]),
             Section("Outputs", [*curves_of_outputs(runs, first_run)]),
@@ -173,17 +173,17 @@ class Html(Output):
     def _maps_of_steps(self, result: Result) -> tuple[Maps, list[int]]:
         """Return the maps of load steps, and the indices of the steps."""
         data, steps, frames = result.dataset, result.dataset.sizes["step"], []
-        chosen, mapped, frame_of = self._mapped(data, steps)
-        for index in chosen:
+        indices, mapped, frame_of = self._mapped(data, steps)
+        for index in indices:
             step = data.isel(step=index)
             label = f"{index + 1}: {label_of_step(data, index)}"
             label += "" if step["converged"].item() else ", NOT CONVERGED"
             note = sentence_of_step(data, index)
             frames.append(replace(frame_of(label, step), note=note))
-        begin = int(np.searchsorted(chosen, show.default_step(data) % steps, side="right")) - 1
+        begin = int(np.searchsorted(indices, show.default_step(data) % steps, side="right")) - 1
         names = [field.name for field in mapped]
-        caption = caption_of_steps(data, names, len(chosen))
-        return Maps(caption, "load step", mapped, frames, max(begin, 0)), chosen
+        caption = caption_of_steps(data, names, len(indices))
+        return Maps(caption, "load step", mapped, frames, max(begin, 0)), indices
 
     def _mapped(
         self, data: Dataset, count: int
@@ -204,14 +204,14 @@ class Html(Output):
             values = [shown[name].values for name in fields]
             return show.frame(label, Result(step).grid, values, points, empty)
 
-        chosen = [(count * (index + 1) + number - 1) // number - 1 for index in range(number)]
-        return chosen, tuple(fields.values()), frame_of
+        indices = [(count * (index + 1) + number - 1) // number - 1 for index in range(number)]
+        return indices, tuple(fields.values()), frame_of
 
 
 def _reproduce(configuration: dict[str, Any], stem: Path) -> Iterator[Code]:
     name, folder = f"{stem.name}.toml", stem.parent.resolve().name or stem.name
-    given = "with the units that were given; numbers without one are"
-    units = given if "study" in configuration else ""
+    with_units = "with the units that were given; numbers without one are"
+    units = with_units if "study" in configuration else ""
     yield Code(tomli_w.dumps(configuration), f"The whole configuration, {units} in SI.", name)
     yield Code(
         f"pellicle run {shlex.quote(name)} -o {shlex.quote(folder)}",

@@ -32,36 +32,36 @@ _UNDER_LOAD = {
 }
 
 
-def curves_of_run(result: Result, chosen: list[int], begin: int) -> list[Picture]:
+def curves_of_run(result: Result, mapped_steps: list[int], begin: int) -> list[Picture]:
     """Return the curves of a run, marked at ``chosen`` steps; the ``begin``-th is shown first."""
     if has_load(result.dataset):
         shown = [(name, figure) for name, figure in figures_of(result) if name in _UNDER_LOAD]
         return [picture(figure, _UNDER_LOAD[name]) for name, figure in shown]
-    pictures = [_profiles(result, chosen, begin)]
+    pictures = [_profiles(result, mapped_steps, begin)]
     if result.dataset.sizes["step"] > 1:
         pictures += [
-            picture(figure, _CURVES[name], chosen)
+            picture(figure, _CURVES[name], mapped_steps)
             for name, figure in figures_of(result)
             if name in _CURVES
         ]
     return pictures
 
 
-def _profiles(result: Result, chosen: list[int], begin: int) -> Picture:
+def _profiles(result: Result, steps: list[int], begin: int) -> Picture:
     """Return the profile of a step, and those that take its place while another is mapped.
 
     Where many steps are mapped, some have the profile of the nearest one, as the caption says.
     """
-    count = -(-len(chosen) // _PROFILES)
+    count = -(-len(steps) // _PROFILES)
 
     def of_step(index: int) -> Picture:
         label = label_of_step(result.dataset, index)
         return picture(profile(result, index), f"Pressure and gap along x, at {label}.")
 
     # The step whose map is shown first is drawn, and every `count`-th before and after it.
-    drawn = {index: of_step(index) for index in chosen[begin % count :: count]}
-    frames = [drawn[min(drawn, key=lambda drawn_step: abs(drawn_step - index))] for index in chosen]
-    return replace(drawn[chosen[begin]], by_frame=frames if len(drawn) > 1 else ())
+    drawn = {index: of_step(index) for index in steps[begin % count :: count]}
+    frames = [drawn[min(drawn, key=lambda drawn_step: abs(drawn_step - index))] for index in steps]
+    return replace(drawn[steps[begin]], by_frame=frames if len(drawn) > 1 else ())
 
 
 def curves_of_study(runs: Runs) -> Iterator[Picture]:
@@ -74,7 +74,7 @@ def curves_of_study(runs: Runs) -> Iterator[Picture]:
 
 
 def curves_of_outputs(
-    runs: Runs, configuration: Mapping[str, Any], chosen: Sequence[int] = ()
+    runs: Runs, configuration: Mapping[str, Any], mapped_steps: Sequence[int] = ()
 ) -> Iterator[Picture]:
     """Yield what the other outputs of a run or study show, marked at ``chosen`` steps."""
     for table in configuration.get("outputs") or ():
@@ -87,7 +87,7 @@ def curves_of_outputs(
         with suppress(Exception):
             for _, part in output.charts(runs):
                 if not isinstance(part, (bytes, Table)):
-                    yield picture(part, f"{name[0].upper()}{name[1:]}.", chosen)
+                    yield picture(part, f"{name[0].upper()}{name[1:]}.", mapped_steps)
 
 
 def picture(

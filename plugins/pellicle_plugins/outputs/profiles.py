@@ -63,8 +63,8 @@ class Profiles(TableFigure):
                 x, y = self._columns(shown)
             # At a rim that sticks the pressure has a peak in single cells.
             in_cells = has_interaction(line) and self._fields() & {"pressure", WALL_PRESSURE}
-            one = Series(x.values, y.values, legend=name.words, look=look)
-            series.append(replace(one, stepped="mid") if in_cells else one)
+            profile = Series(x.values, y.values, legend=name.words, look=look)
+            series.append(replace(profile, stepped="mid") if in_cells else profile)
             if self.reference:
                 x, y = self._columns(exact_line(line))
                 is_last = number == len(lines) - 1

@@ -47,11 +47,11 @@ class Spectrum(TableFigure):
         many, series, rows = len(curves) > 1, list[Series](), list[tuple[object, ...]]()
         for hue, (name, spectra) in enumerate(curves):
             for surface, part in spectra.items():
-                seen = part.density > _ROUND_OFF * highest
+                resolved = part.density > _ROUND_OFF * highest
                 is_surface = surface == "displacement"
                 look = Look(hue, _LINES[surface], hue if is_surface and many else None, sparse=True)
                 legend = name.words if is_surface else ""
-                points = part.wavenumber[seen], part.density[seen]
+                points = part.wavenumber[resolved], part.density[resolved]
                 series.append(Series(*points, legend=legend, look=look))
                 numbers = zip(part.wavenumber, part.density, part.count, strict=True)
                 rows += [(name.key, surface, *row) for row in numbers]

@@ -39,11 +39,11 @@ def load_profile(result: Result) -> Chart:
     The line goes through the centre of the domain. Heights are above the undeformed surface.
     """
     data, steps = result.dataset, result.dataset.sizes["step"]
-    chosen = sorted({round(n) for n in np.linspace(0, steps - 1, min(steps, _LINES))})
+    steps_shown = sorted({round(n) for n in np.linspace(0, steps - 1, min(steps, _LINES))})
     line = data.isel(y=data.sizes["y"] // 2)
     x, series = line["x"].values, list[Series]()
-    for number, step in enumerate(chosen):
-        look, label = Look(number, marker=None), label_of_step(data, step) * (len(chosen) > 1)
+    for number, step in enumerate(steps_shown):
+        look, label = Look(number, marker=None), label_of_step(data, step) * (len(steps_shown) > 1)
         surface = -line["displacement"].values[step]
         series.append(Series(x, surface, name=f"height {step + 1}", legend=label, look=look))
         pressure = line["pressure"].values[step]
@@ -51,7 +51,7 @@ def load_profile(result: Result) -> Chart:
             Series(x, pressure, name=f"traction {step + 1}", look=look, panel=1, stepped="mid")
         )
     axes = [Axis("height of the surface", "m", signed=True), Axis("traction", "Pa", signed=True)]
-    title, hues = str(data.attrs.get("title", "")), len(chosen)
+    title, hues = str(data.attrs.get("title", "")), len(steps_shown)
     return Chart(Axis("x", "m"), axes, series, title, heights=(3, 1), hues=hues, ordered=hues > 1)
 
 

@@ -1,22 +1,4 @@
-"""What the tests of bad input share: the command line's answer."""
-
-from __future__ import annotations
-
-from collections.abc import Callable
-from dataclasses import dataclass
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What the command line did."""
-
-    exit_code: int
-    stdout: str
-    message: str
-    """All of stderr."""
-
-
-Cli = Callable[..., Outcome]
+"""What the tests of bad input share: how a message reads."""
 
 
 def says(message: str, *words: str) -> None:

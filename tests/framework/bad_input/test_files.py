@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 import pellicle as pl
-from tests.framework.bad_input.command_line import Cli, says
+from tests.command import Cli
+from tests.framework.bad_input.command_line import says
 
 
 @pytest.mark.parametrize("type_", ["csv", "figures"])
@@ -22,28 +23,25 @@ def test_output_folder_that_cannot_be_written(
 
     monkeypatch.setattr("pellicle.runs.solve.solve_step", fail)
     outputs = f"outputs=[{{type='{type_}'}}]"
-    outcome = cli("run", "start.toml", "-o", "out", "--set", outputs)
-    assert outcome.exit_code == 2
-    says(outcome.message, "out/start", "cannot be written", "choose another folder")
+    outcome = cli("run", "start.toml", "-o", "out", "--set", outputs, code=2)
+    says(outcome.stderr, "out/start", "cannot be written", "choose another folder")
     assert Path("out").read_text(encoding="utf-8") == "in the way"
 
 
 def test_result_of_another_configuration(cli: Cli) -> None:
     """A result is replaced by that of another configuration only when asked."""
-    assert cli("run", "start.toml", "-o", "out").exit_code == 0
+    cli("run", "start.toml", "-o", "out")
     before = Path("out/start.h5").read_bytes()
     other = ["run", "start.toml", "-o", "out", "--set", "loading.depth='5 um'"]
-    outcome = cli(*other)
-    assert outcome.exit_code == 2
-    says(outcome.message, "out/start.h5 holds the result of another configuration", "--overwrite")
+    outcome = cli(*other, code=2)
+    says(outcome.stderr, "out/start.h5 holds the result of another configuration", "--overwrite")
     assert Path("out/start.h5").read_bytes() == before
-    assert cli(*other, "--overwrite").exit_code == 0
+    cli(*other, "--overwrite")
     assert pl.load("out/start.h5").dataset["depth"].values == pytest.approx([5e-6])
 
 
 def test_figures_that_cannot_be_written(cli: Cli) -> None:
     """A file in place of the folder for figures is named."""
-    assert cli("run", "start.toml", "-o", "out", "--quiet").exit_code == 0
-    outcome = cli("plot", "out/start.h5", "-o", "start.toml")
-    assert outcome.exit_code == 2
-    says(outcome.message, "start.toml/start-pressure.png: cannot be written", "another folder")
+    cli("run", "start.toml", "-o", "out", "--quiet")
+    outcome = cli("plot", "out/start.h5", "-o", "start.toml", code=2)
+    says(outcome.stderr, "start.toml/start-pressure.png: cannot be written", "another folder")

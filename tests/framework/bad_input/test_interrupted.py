@@ -10,10 +10,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli.app import app
+from tests.command import call
 from tests.framework.bad_input.command_line import says
 from tests.framework.sentences.bad_files import START
 
@@ -58,6 +57,5 @@ def test_interrupt(tmp_path: Path, long_run: subprocess.Popen[str]) -> None:
     done = pl.load(tmp_path / "out/start.h5").dataset
     assert 1 <= done.sizes["step"] < 20_000
     assert done["converged"].values.all()
-    shown = CliRunner().invoke(app, ["show", str(tmp_path / "out/start.h5")])
+    shown = call("show", tmp_path / "out/start.h5", code=1)
     assert f"interrupted: {done.sizes['step']} of 20000 steps" in shown.stderr
-    assert shown.exit_code == 1

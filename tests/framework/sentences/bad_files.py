@@ -43,12 +43,23 @@ interaction = { type = "jkr", work_of_adhesion = "50 mJ/m^2" }
 loading = { depth = ["5 um", "0 um"] }
 solver = { type = "active_set", tolerance = 1e-6 }
 """
+DROPS = """
+grid = { points = 16, size = "1 mm", boundary = "free" }
+kernel = { type = "tensed_membrane", reduced_modulus = "10 kPa", tension = "0.1 N/m" }
+[load]
+type = "droplet"
+surface_tension = "30 mN/m"
+contact_angle = "60 degree"
+radius = ["0.1 mm", "0.2 mm", "0.3 mm"]
+"""
 GOOD = np.zeros((16, 16))
 NAN = np.where(np.eye(16) > 0, np.nan, 0.0)
 HUGE = {"descr": "<f8", "fortran_order": False, "shape": (10**9, 10**9)}
 BYTES = {
     "start.toml": START.encode(),
     "sticky.toml": STICKY.encode(),
+    "drops.toml": DROPS.encode(),
+    "nothing_presses.toml": DROPS.partition("[load]")[0].encode(),
     "vary.toml": f"{START}[study.vary]\n'kernel.tension' = [0, '10 mN/m']\n".encode(),
     "syntax.toml": b"title = 'a'\n[grid]\npoints = \n",
     "key_twice.toml": b"a = 1\na = 2\n",
@@ -82,6 +93,10 @@ BYTES = {
     "fit_one_value_per_file.toml": b'indenter = "sphere"\n[per_file]\nradius = "1 um"',
     "fit_of_a_grid.toml": b'indenter = "sphere"\n[grid]\npoints = 9',
     "fit_of_a_table.toml": b"position [um],force [nN]\n1,2\n",
+    "brace.json": b"{",
+    "list.json": b"[]",
+    "no_files.json": b'{"configuration": {"indenter": "cone"}, "curves": []}',
+    "ball.json": b'{"configuration": {"indenter": "ball", "curves": "a.csv"}, "curves": []}',
     "no_unit.csv": b"position,force\n1,2\n3,4\n",
     "volts.csv": b"position [um],force [V]\n1,2\n3,4\n",
     "nanometres.csv": b"position [um],force [nm]\n1,2\n3,4\n",

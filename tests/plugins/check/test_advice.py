@@ -8,14 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli.app import app
 from pellicle.components import HasAbelSlope
 from pellicle_axisymmetric.indentation import indent
 from pellicle_check.advice import advise
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid
+from tests.command import call
 
 MODULUS, DEPTH = 1e4, 2e-6
 SHAPES: dict[str, tuple[dict[str, Any], HasAbelSlope]] = {
@@ -114,19 +113,15 @@ def test_a_contact_at_the_edge_is_told_with_a_domain_that_holds_it(tmp_path: Pat
         small.to_toml() + '\n[study.vary]\n"kernel.tension" = [0.0, 0.05]\n', encoding="utf-8"
     )
     command = ["run", str(tmp_path / "small.toml"), "-o", str(tmp_path / "out")]
-    refused = CliRunner().invoke(app, command)
-    done = CliRunner().invoke(app, ["check", str(tmp_path / "small.toml")])
-    assert refused.exit_code == done.exit_code == 1, refused.output
-    assert "pellicle check" in refused.output
+    assert "pellicle check" in call(*command, code=1).output
+    done = call("check", tmp_path / "small.toml", code=1)
     assert "reaches the edge" in done.output
     named = re.search(r"grid.size = (\[.*?\]) holds", done.output)
     assert named, done.output
-    data = CliRunner().invoke(app, ["check", str(tmp_path / "small.toml"), "--json"])
-    assert (data.exit_code, json.loads(data.stdout)["at_edge"]) == (1, [2, 3])
-    done = CliRunner().invoke(app, [*command, "--overwrite", "--set", f"grid.size={named[1]}"])
-    assert done.exit_code == 0, done.output
-    checked = CliRunner().invoke(app, ["check", str(tmp_path / "study.toml")])
-    assert checked.exit_code == 1
+    data = call("check", tmp_path / "small.toml", "--json", code=1)
+    assert json.loads(data.stdout)["at_edge"] == [2, 3]
+    call(*command, "--overwrite", "--set", f"grid.size={named[1]}")
+    checked = call("check", tmp_path / "study.toml", code=1)
     assert re.search("surface tension 0 .*: the contact of steps 2, 3 reaches", checked.output)
 
 
@@ -159,7 +154,7 @@ def test_a_study_is_checked_run_by_run(tmp_path: Path) -> None:
         run().to_toml() + '\n[study.vary]\n"kernel.tension" = [0.0, 0.05]\n',
         encoding="utf-8",
     )
-    data = json.loads(CliRunner().invoke(app, ["check", str(path), "--json"]).stdout)
+    data = json.loads(call("check", path, "--json").stdout)
     alone = [advise(run(tension=tension), 0.01) for tension in (0.0, 0.05)]
     for checked, expected in zip(data["runs"], alone, strict=True):
         assert checked["points"] == list(expected.points)
@@ -168,7 +163,7 @@ def test_a_study_is_checked_run_by_run(tmp_path: Path) -> None:
         )
     worst = max(step.force_error for advice in alone for step in advice.steps)
     over = sum(max(step.force_error for step in advice.steps) > 0.01 for advice in alone)
-    printed = CliRunner().invoke(app, ["check", str(path)]).stdout
+    printed = call("check", path).stdout
     assert f"2 runs; in {over} the error of force or depth may exceed 1 %" in printed
     number = printed.partition("the worst: ")[2].partition(" %")[0]
     assert float(number) == pytest.approx(100 * worst, rel=0.06)
@@ -180,8 +175,7 @@ def test_a_run_of_a_study_that_cannot_be_checked_is_named(tmp_path: Path) -> Non
     path.write_text(
         run().to_toml() + '\n[study.vary]\n"grid.points" = [64, 16]\n', encoding="utf-8"
     )
-    done = CliRunner().invoke(app, ["check", str(path)])
-    assert done.exit_code == 2
+    done = call("check", path, code=2)
     assert re.search(r"grid\.points: .*leave nothing to compare with.*at least 32", done.output)
     assert "(run with number of cells 16)" in done.output
 
@@ -204,5 +198,5 @@ def test_a_rough_surface_is_checked_on_grids_that_resolve_it(cells: int, tmp_pat
     assert 0 < step.area_error < 1
     path = tmp_path / "rough.toml"
     path.write_text(rough.to_toml(), encoding="utf-8")
-    printed = CliRunner().invoke(app, ["check", str(path)]).stdout
+    printed = call("check", path).stdout
     assert ("shortest wave of the indenter has 4 cells" in printed) == (cells == 4)

@@ -2,29 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
+from functools import partial
 
 import pytest
-from typer.testing import CliRunner, Result
 
 import pellicle as pl
-from pellicle.cli.app import app
+from tests.command import Cli
 from tests.shared_fits import share_fits, skip_rivals
 
 
 @pytest.fixture
-def cli(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Result]:
+def cli(cli: Cli) -> Cli:
     """Return a function that calls ``pellicle fit`` in an empty folder and checks its exit code."""
-    monkeypatch.chdir(tmp_path)
-
-    def call(*arguments: str, code: int = 0) -> Result:
-        result = CliRunner().invoke(app, ["fit", *arguments])
-        assert result.exit_code == code, result.output
-        assert "Traceback" not in result.output
-        return result
-
-    return call
+    return partial(cli, "fit")
 
 
 @pytest.fixture

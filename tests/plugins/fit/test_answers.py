@@ -18,6 +18,8 @@ from pellicle_fit.config import DEFAULT_RIVALS
 from pellicle_fit.estimation.candidate import Candidate
 from pellicle_fit.estimation.intervals import End, Estimate, common_value
 from pellicle_fit.estimation.noise import Flaw
+from pellicle_fit.selection.forecast import Means, measurements, telling
+from pellicle_fit.selection.forecast import _foretold as foretold
 from pellicle_fit.selection.verdict import Verdict, decision
 from pellicle_plugins.indenters.of_revolution import Cone, FlatPunch, Paraboloid, Sphere
 from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array
@@ -218,18 +220,54 @@ def test_means_of_rows_answer_as_all_rows_do(
         ({"": 50, "a": 20, "b": 12, "ab": 0}, Verdict.NEEDED),
         ({"": 50, "a": 20, "b": 11, "ab": 0}, Verdict.CANNOT_TELL),
         ({"": 50, "a": 20, "b": 5, "ab": 0}, Verdict.OTHER),
+        # One that does without the solid is no explanation; one of a stiffer solid is.
+        ({"": 50, "a": 20, "b": 12, "ab": (0, 0.1)}, Verdict.OTHER),
+        ({"": 50, "a": 20, "b": 12, "ab": (0, 10.0)}, Verdict.NEEDED),
     ],
 )
-def test_verdicts_follow_from_criteria(aic: dict[str, float], verdict: Verdict) -> None:
-    """At the margins the verdict changes, and where the best fails its checks there is none."""
-    same = {"parameters": {"reduced_modulus": SimpleNamespace(value=1.0)}}
-    fits = {
-        frozenset(key): cast("Candidate", SimpleNamespace(types=frozenset(key), aic=v, **same))
-        for key, v in aic.items()
-    }
+def test_verdicts_follow_from_criteria(aic: dict[str, Any], verdict: Verdict) -> None:
+    """At the margins the verdict changes, and where the best fails its checks there is none.
+
+    Beside an AIC stands the modulus over that of the others.
+    """
+    fits = {}
+    for key, value in aic.items():
+        types = frozenset(key)
+        criterion, modulus = value if isinstance(value, tuple) else (value, 1.0)
+        known = {"reduced_modulus": SimpleNamespace(value=modulus)}
+        fit = SimpleNamespace(types=types, aic=criterion, parameters=known)
+        fits[types] = cast("Candidate", fit)
     word = frozenset("a")
     assert decision(fits, word, inadequate=False, margin=4.0).verdict is verdict
     assert decision(fits, word, inadequate=True, margin=4.0).verdict is Verdict.UNDESCRIBED
+
+
+def test_the_best_without_what_is_asked_for_is_at_its_minimum() -> None:
+    """The verdict compares two minima, however far the other is behind."""
+    known = truth_of("tension", np.random.default_rng(5))
+    rows = fit_verdicts.rows_of("both", TOP)[0]
+    force = known.force(rows)
+    force = force + NOISE[1] * force.max() * np.random.default_rng(1).standard_normal(force.size)
+    rivals = ["worn_tip", "softening"]
+    found = fit(rows.depth, force, time=rows.time - rows.time[0], rivals=rivals, segment="both")
+    assert found.verdict is Verdict.NEEDED
+    decided = found.answer.decision
+    for types in (decided.target, decided.other):
+        (best,) = (e for e in found.answer.explanations if e.types == types)
+        again = best.objective.minimise(best.minimum.at)
+        assert best.minimum.chi_squared - again.chi_squared < 1e-4
+
+
+def test_forecasts_bend_the_cantilever() -> None:
+    """Base and force of a forecast obey z_tip = z_base − F/k, with k of the curve."""
+    bent = fit(*curve(), spring_constant=0.02)
+    for _, plan in measurements(bent.answer.selected):
+        _, forecast = foretold(bent.answer.selected, plan)
+        assert forecast.stiffness == 0.02
+        np.testing.assert_allclose(forecast.base, plan.position, atol=1e-15)
+        np.testing.assert_allclose(
+            forecast.position, plan.position - forecast.force / 0.02, atol=1e-15
+        )
 
 
 @pytest.mark.slow
@@ -310,6 +348,11 @@ def test_ties_widen_the_interval() -> None:
     low, high = (max(e.low or 0 for e in moduli), min(e.high or np.inf for e in moduli))
     value = beside.reduced_modulus.value
     assert (low > high and np.isnan(value)) or low <= value <= high
+    # A tension does not relax: the way back, or a dwell, tells it from a solid that does.
+    proposal, curves = telling(beside.answer.target, beside.answer.tied_without)
+    assert proposal
+    assert proposal.means in (Means.RETRACTION, Means.DWELL)
+    assert curves == 1
 
 
 @pytest.mark.parametrize(("name", "share"), [("spring_constant", 0.1), ("radius", 0.1)])

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import json
 import pickle
-import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import Result
 from jsonschema import Draft202012Validator
 
 import pellicle as pl
 from pellicle_fit.problem import components_of
+from tests.command import Cli
 
-Cli = Callable[..., Result]
 OPTIONS: dict[str, Any] = {
     "indenter": "sphere",
     "poissons_ratio": 0.4,
@@ -150,25 +147,6 @@ def test_options_of_the_question(cli: Cli) -> None:
     configuration = found["configuration"]
     assert configuration["fix"] == {"relaxation_exponent": 0.1, "reduced_modulus": 6e3}
     assert configuration["uncertainty"] == {"radius": 0.03, "sensitivity": 0.05}
-
-
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ({"model": "springs"}, "'springs' is not an effect"),
-        ({"rivals": [["offset", 3]]}, "rivals"),
-        ({"fix": {"tension": 0, "reduced_modulus": 1}}, "fixes both modulus and tension"),
-        ({"uncertainty": {"mass": 0.1}}, "Known: radius, sensitivity, spring_constant"),
-        ({"uncertainty": {"radius": "3 N"}}, "uncertainty.radius: '3 N'"),
-        ({"uncertainty": {"radius": "-3 %"}}, "uncertainty.radius"),
-        ({"uncertainty": {"radius": 10}}, "10 is a share of 1000 %, beyond 100 %; 10 % is 0.1 or"),
-        ({"uncertainty": {"radius": "200 %"}}, "share of 200 %, beyond 100 %; 10 % is 0.1"),
-    ],
-)
-def test_bad_options(options: dict[str, Any], words: str) -> None:
-    """What is wrong is said by its place in the configuration."""
-    with pytest.raises(pl.ConfigError, match=re.escape(words)):
-        pl.FitConfig.merged(indenter="sphere", radius="5 um", **options)
 
 
 def test_schema() -> None:

@@ -90,25 +90,6 @@ def test_a_contact_far_wider_than_the_layer_is_not_described() -> None:
     assert "deeper than the force of this contact is known" in fit.comparison
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ({"poissons_ratio": None}, "poissons_ratio: is missing"),
-        ({"thickness": "4 um", "kernel": "tensed_membrane"}, "thickness: cannot be given with a"),
-        ({"thickness": "4 Pa"}, "thickness: "),
-        ({"thickness": "thick"}, "Known: free"),
-        ({"poissons_ratio": -0.2}, "poissons_ratio: -0.2 is not allowed"),
-        ({"indenter": "cone", "radius": None, "half_angle": 1.2, "kernel": "winkler"}, "thickness"),
-    ],
-)
-def test_bad_options(options: dict[str, Any], words: str) -> None:
-    """What cannot be is said in words, with what is allowed."""
-    given = {**BEAD, "thickness": "free", "rivals": (), **options}
-    with pytest.raises(pl.ConfigError) as caught:
-        pl.fit(*curve(), **{name: value for name, value in given.items() if value is not None})
-    assert words in str(caught.value)
-
-
 @pytest.mark.parametrize("thickness", [THICK, 6e-6])
 def test_the_polynomial_in_common_use_is_no_tension(thickness: float) -> None:
     """A curve made by it, which is up to 6 % below the exact one, is told as what it is."""

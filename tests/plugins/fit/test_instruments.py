@@ -303,7 +303,7 @@ def test_readers_keep_their_contract(
     instruments.WRITERS[name](tmp_path / name, recording)
     type_, given = READERS[name]
     reader = pl.registry().make(Reader, {"type": type_})
-    check_reader(reader, tmp_path / name, given=given)
+    check_reader(reader, tmp_path / name, calibration=given)
 
 
 @pytest.mark.parametrize(

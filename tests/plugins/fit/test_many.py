@@ -11,7 +11,6 @@ from typing import Any, Literal
 import numpy as np
 import pytest
 import xarray as xr
-from click.testing import Result
 from numpy.typing import NDArray
 
 import pellicle as pl
@@ -24,6 +23,7 @@ from pellicle_fit.report.population import distributions
 from pellicle_fit.report.tables import groups
 from pellicle_fit.words.population import sentences_of_population
 from pellicle_plugins.indenters.of_revolution import Paraboloid
+from tests.command import Cli
 from tests.plugins.fit.conftest import ends_of
 
 Array = NDArray[np.float64]
@@ -33,7 +33,6 @@ OPTIONS = ("-i", "paraboloid", "--radius", "10 um", "--rivals", "none")
 ALONE: dict[str, Any] = {"rivals": (), "progress": False}
 BEAD: dict[str, Any] = {"indenter": "paraboloid", "radius": RADIUS}
 HERTZ = BEAD | ALONE | {"fix": {"tension": 0}}
-Cli = Callable[..., Result]
 
 
 def curve(seed: int, *, radius: float = RADIUS, points: int = 60) -> tuple[Array, Array]:

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import Result
 
 import pellicle as pl
 from pellicle.runs.lock import locked
+from tests.command import Cli
 from tests.part_runs import run_parts
 from tests.plugins.fit.test_many import OPTIONS, curve, save
 
-Cli = Callable[..., Result]
 COUNT = 20
 TIMES = ("wall_time", "date", "checksum")
 

@@ -7,7 +7,6 @@ import hashlib
 import json
 import os
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +14,11 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib import pyplot
-from typer.testing import CliRunner, Result
 
 import pellicle as pl
-from pellicle.cli.app import app
+from tests.command import Cli, call
 from tests.pictures import drawn_width
 
-Cli = Callable[..., Result]
 TOML = """
 curves = ["Bead 1 µ.csv"]
 poissons_ratio = 0.5
@@ -157,29 +154,6 @@ def test_record_of_many(cli: Cli) -> None:
     assert [row["tension"] for row in json.loads(again)["curves"]] == [r["tension"] for r in rows]
 
 
-@pytest.mark.parametrize(
-    ("content", "words"),
-    [
-        (None, "cannot be read"),
-        ("{", "is not the JSON of a fit of files"),
-        ("[]", "is not the JSON of a fit"),
-        (
-            '{"configuration": {"indenter": "cone"}, "curves": []}',
-            "is not the JSON of a fit of files",
-        ),
-        (
-            '{"configuration": {"indenter": "ball", "curves": "a.csv"}, "curves": []}',
-            "'ball' is not an indenter",
-        ),
-    ],
-)
-def test_bad_records(cli: Cli, content: str | None, words: str) -> None:
-    """A file that is no record is refused in words."""
-    if content is not None:
-        Path("fit.json").write_text(content, encoding="utf-8")
-    assert words in cli("fit.json", code=2).stderr
-
-
 @pytest.mark.slow
 @pytest.mark.usefixtures("no_rivals")
 def test_read_curves_and_draw_them(tmp_path: Path) -> None:
@@ -210,11 +184,6 @@ def test_the_folder_of_one_fit_is_shown_and_drawn(cli: Cli) -> None:
     printed = cli(str(FILE), *OPTIONS, "-o", "out")
     told, _, files = printed.stdout.partition("wrote ")
     assert "out/Bead 1 µ-fit.h5" in files
-
-    def call(*arguments: str, code: int = 0) -> Result:
-        result = CliRunner().invoke(app, [*arguments])
-        assert result.exit_code == code, result.output
-        return result
 
     assert call("show", "out").stdout == told
     assert " Pa (" in call("show", "out", "--si").stdout

@@ -97,26 +97,6 @@ def test_quadric_is_simulated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         assert low <= truth <= high < 1.5 * low
 
 
-@pytest.mark.parametrize(
-    ("kernel", "words"),
-    [
-        ({"type": "tensed_membrane", "tension": 1}, "kernel.tension: is determined by the fit"),
-        ({"type": "coated", "substrate": LAYER}, "kernel.substrate.poissons_ratio: is missing"),
-        ({"type": "bendy"}, "'bendy' is not a kernel"),
-        ({"type": "layered", "layers": [{}]}, "'layered' has no field reduced_modulus"),
-        (
-            {"type": "coated", "substrate": LAYER | {"youngs_modulus": 1e3}},
-            "kernel.substrate.youngs_modulus: is determined by the fit",
-        ),
-    ],
-)
-def test_bad_kernels(kernel: Any, words: str) -> None:
-    """A kernel that cannot be fitted says what it lacks, or has too much of."""
-    with pytest.raises(pl.ConfigError) as caught:
-        solid(kernel)
-    assert words in str(caught.value)
-
-
 def test_poissons_ratio_is_the_kernels() -> None:
     """One ratio is enough: the kernel's is used for Young's modulus, and the other way round."""
     skin = {"type": "coated", "substrate": LAYER}
@@ -170,14 +150,6 @@ def test_a_sharp_pyramid_is_known_and_a_rounded_one_simulated(
         )
         asked = problem(config, [*config.sources({"a": (depth, np.maximum(depth, 0) ** 2)})])
         assert isinstance(asked.curves[0].indenter, str) is not is_known
-
-
-def test_what_counts_against_the_modulus_is_refused() -> None:
-    """A bending stiffness has no meaning while the modulus is not known."""
-    with pytest.raises(
-        pl.ConfigError, match=r"kernel\.bending: 1e-12 N\*m scales with the modulus"
-    ):
-        solid({"type": "bending_skin", "bending": "1 pN*m"})
 
 
 @pytest.mark.slow

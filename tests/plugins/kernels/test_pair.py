@@ -115,26 +115,6 @@ def test_two_bodies_that_relax_alike_are_one() -> None:
     assert force(both, **loading)["force"].item() == pytest.approx(expected, rel=1e-8)
 
 
-@pytest.mark.parametrize(
-    ("second", "words"),
-    [
-        (SOLID, "relax differently"),
-        (relaxing(fraction=0.4), "relax differently"),
-        ({"type": "coated", "tension": 0.1, "substrate": relaxing()}, "under a skin"),
-    ],
-)
-def test_bodies_that_have_no_sum_of_branches_are_refused(second: Any, words: str) -> None:
-    """In words that name the kernel."""
-    with pytest.raises(pl.ConfigError, match=words) as caught:
-        pl.Run(
-            grid={"points": 8, "size": 1e-4},
-            kernel={"type": "pair", "first": relaxing(), "second": second},
-            indenter=BALL,
-            loading={"depth": [1e-6], "time": [0.0]},
-        )
-    assert caught.value.problems[0].field == "kernel"
-
-
 def test_derivatives_by_both_bodies() -> None:
     """Two equal bodies share the derivative of one of half."""
     paths = ["kernel.first.tension", "kernel.second.tension"]

@@ -172,35 +172,6 @@ def test_constants_in_other_words() -> None:
     np.testing.assert_allclose([b.time(np.array([2.0])) for b in other.branches()], times)
 
 
-@pytest.mark.parametrize(
-    ("fields", "message"),
-    [
-        ({"poissons_ratio": 0.5}, "< 0.5"),
-        ({"poissons_ratio": 0.7}, "< 0.5"),
-        ({"shear_modulus": None}, "no modulus; give exactly one"),
-        ({"youngs_modulus": 1.0}, "two moduli; give exactly one"),
-        ({"diffusivity": None}, "nothing given of how fast the liquid flows"),
-        ({"permeability": 1e-18}, "diffusivity and permeability given"),
-        ({"diffusivity": None, "viscosity": 1e-3}, "viscosity given of how fast"),
-        ({"surface": "wet"}, "Known: open, sealed"),
-    ],
-)
-def test_what_is_refused(fields: dict[str, Any], message: str) -> None:
-    """Every error names what to give."""
-    with pytest.raises(pl.ConfigError, match=message):
-        gel(**fields)
-
-
-def test_a_solid_that_drains_cannot_be_made_to_relax_too() -> None:
-    """Its network would relax under the pressure of its liquid, which is another theory."""
-    with pytest.raises(pl.ConfigError, match="relaxes already"):
-        pl.kernel(
-            "viscoelastic",
-            solid=gel().model_dump(exclude_none=True),
-            relaxation=[{"fraction": 0.5, "time": 1.0}],
-        )
-
-
 def test_two_bodies_that_drain_alike() -> None:
     """The pair has the branches of both, and a pair of equals is a body half as stiff."""
     one = gel().model_dump(exclude_none=True)

@@ -238,44 +238,6 @@ def test_energy_is_a_variable_of_contacts_too() -> None:
     assert data["elastic_energy"].item() == pytest.approx(expected, rel=2e-3)
 
 
-@pytest.mark.parametrize(
-    ("change", "field", "message"),
-    [
-        ({"indenter": {"type": "cone", "half_angle": 1.2}}, "indenter", "leave one out"),
-        ({"loading": {"depth": 1e-6}}, "loading.depth", "needs an indenter"),
-        ({"loading": {"stiffness": True}}, "loading.stiffness", "needs an indenter"),
-        ({"loading": {"time": [0, 1]}}, "loading.time", "2 values for 3 load steps"),
-        ({"interaction": {"type": "jkr", "work_of_adhesion": 1}}, "interaction", "a contact"),
-        ({"corrections": [{"type": "yastrebov"}]}, "corrections", "a contact"),
-        ({"outputs": [{"type": "patches"}]}, "outputs.0.type", "shows a contact"),
-        ({"load": None}, "indenter", "is missing"),
-    ],
-)
-def test_what_needs_a_contact_is_refused(change: Any, field: str, message: str) -> None:
-    """A run has exactly one of an indenter and a load, and says what does not go with it."""
-    table = {"grid": GRID, "kernel": SKIN, "load": DROPLET | {"radius": [1e-4, 2e-4, 3e-4]}}
-    with pytest.raises(pl.ConfigError, match=message) as raised:
-        pl.Run(**table | change)
-    assert field in [problem.field for problem in raised.value.problems]
-
-
-@pytest.mark.parametrize(
-    ("load", "message"),
-    [
-        (DROPLET | {"radius": 6e-4}, "beyond the domain"),
-        (DROPLET | {"volume": 1e-12}, "exactly one"),
-        (DROPLET | {"radius": [1e-4, 2e-4], "surface_tension": [0.03, 0.04]}, "only one field"),
-        ({"type": "ridge", "line_force": 1.0}, "has no ends"),
-        ({"type": "map", "values": np.ones((2, 3)), "unit": "Pa"}, "of shape"),
-        ({"type": "map", "values": np.full((2, 3), np.nan), "unit": "Pa"}, "infinite tractions"),
-    ],
-)
-def test_a_load_that_cannot_be_is_refused(load: dict[str, Any], message: str) -> None:
-    """In words that name the field, before anything is solved."""
-    with pytest.raises(pl.ConfigError, match=message):
-        solved(load)
-
-
 def test_what_depends_on_the_cells_is_said() -> None:
     """A line without width or tension, and slopes beyond the theory."""
     line = {"type": "ring", "radius": RADIUS, "line_force": -0.003}

@@ -10,12 +10,11 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli.app import app
 from pellicle.show import without_round_off
 from pellicle_plugins.outputs.step_figures import profile
+from tests.command import call
 from tests.pictures import pixels
 from tests.plugins.outputs.shared import bead, rows
 
@@ -151,9 +150,8 @@ def test_control_characters_in_a_title_do_no_harm(tmp_path: Path) -> None:
     assert "--&gt; d" in page
     (path,) = tmp_path.glob("*.h5")
     assert json.loads(pl.load(path).dataset.attrs["configuration"])["title"] == CONTROL
-    shown = CliRunner().invoke(app, ["show", str(path)])
+    shown = call("show", path)
     assert shown.stdout.startswith("title:    a\ufffdb\ufffd[1mc\ufffd")
     (tmp_path / "a.toml").write_text(run.to_toml(), encoding="utf-8")
-    planned = CliRunner().invoke(app, ["run", str(tmp_path / "a.toml"), "--dry-run"])
-    assert planned.exit_code == 0
+    planned = call("run", tmp_path / "a.toml", "--dry-run")
     assert "\x1b" not in planned.stdout

@@ -14,13 +14,12 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from typer.testing import CliRunner
 
 import pellicle as pl
-from pellicle.cli.app import app
 from pellicle.show.fields import default_step
 from pellicle.units import Quantity
 from pellicle.variables import VARIABLES, names_of
+from tests.command import call
 from tests.plugins.outputs.shared import rows
 
 # A coarse grid makes pictures in seconds; the units E* = R = w = 1 make slopes steep.
@@ -101,9 +100,7 @@ def test_pull_off_on_few_cells_has_its_error_beside_it(bead: tuple[Path, pl.Resu
         assert {"pull_off", "work"} <= known.keys()
         assert {name: data[name].item() for name in names_of("path") if name in data} == known
     assert -summary["pull_off"] * 0.05 < summary["pull_off_accuracy"] < -summary["pull_off"] * 0.2
-    assert message in " ".join(
-        CliRunner().invoke(app, ["show", str(folder / "run.h5")]).output.split()
-    )
+    assert message in " ".join(call("show", folder / "run.h5").output.split())
     assert message[1:] in unescape((folder / "run.html").read_text(encoding="utf-8"))
 
 
@@ -122,7 +119,7 @@ def test_the_path_is_summarised_where_the_result_is(bead: tuple[Path, pl.Result]
     assert summary["detach_accuracy"] == pytest.approx(0.6)
     assert summary["jump_in"] == pytest.approx(0.2)
     assert summary["work"] == pytest.approx(summary["dissipated_energy"], rel=1e-6)
-    shown = CliRunner().invoke(app, ["show", str(folder / "run.h5")]).output
+    shown = call("show", folder / "run.h5").output
     page = unescape((folder / "run.html").read_text(encoding="utf-8"))
     for name, value in summary.items():
         unit, words = VARIABLES[name].unit, VARIABLES[name].words
@@ -191,8 +188,7 @@ def test_a_path_that_never_touches_is_drawn(tmp_path: Path) -> None:
     result = pl.run({**BEAD, **changes}, directory=tmp_path, progress=False, threads=1)
     assert result.dataset["contact_area"].max() == 0
     assert np.isnan(result.path_summary["pull_off"])
-    shown = CliRunner().invoke(app, ["show", str(tmp_path / "run.h5")])
-    assert shown.exit_code == 0, shown.output
+    shown = call("show", tmp_path / "run.h5")
     assert re.search(r"^pull-off force +none ", shown.output, re.MULTILINE)
     assert "<td" in (tmp_path / "run.html").read_text(encoding="utf-8")
 
@@ -214,7 +210,7 @@ def test_a_study_has_one_path_for_each_run(study: tuple[Path, xr.Dataset]) -> No
     assert {float(row["pull_off [N]"]) for row in by_step} == {*table["pull_off"].values}
     errors = table["pull_off_accuracy"] / -table["pull_off"]
     assert ((errors > 0.05) & (errors < 0.2)).all()
-    output = CliRunner().invoke(app, ["show", str(folder)]).output
+    output = call("show", folder).output
     assert "accuracy of the pull-off force" in output
     shown = output.partition("path:")[2]
     assert [line.split()[1] for line in shown.splitlines()[2:4]] == [
@@ -237,7 +233,7 @@ def test_without_an_interaction_nothing_is_added(tmp_path: Path) -> None:
     assert "direction" not in rows(tmp_path / "run-curves.csv")[0]
     assert b"wall_pressure" not in (tmp_path / "run-0001.vts").read_bytes()
     assert "pull off" not in (tmp_path / "run.html").read_text(encoding="utf-8")
-    assert "path:" not in CliRunner().invoke(app, ["show", str(tmp_path / "run.h5")]).output
+    assert "path:" not in call("show", tmp_path / "run.h5").output
     with pytest.raises(pl.ConfigError, match="pull_off"):
         pl.Study.of(
             {**hard, "study": {"vary": {"indenter.radius": [1, 2]}, "derived": {"p": "pull_off"}}}

@@ -181,21 +181,20 @@ def test_preconditioner_is_nearly_the_inverse(tension: float) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("length", "most"), [(0.1, 4), (1.0, 60)])
+@pytest.mark.parametrize(
+    ("points", "length", "most"),
+    [
+        (32, 0.1, 4),  # 2.0; with a kink at the edge of the contact 20
+        (32, 1.0, 60),  # 48; 200
+        ((56, 18), 0.1, 4),  # 2.4; if the cells were taken for squares 6.7
+        ((18, 56), 0.1, 4),
+        ((56, 18), 1.0, 25),  # 13; 33
+        ((18, 56), 1.0, 25),
+    ],
+)
 def test_preconditioner_of_a_skin_that_bends_is_nearly_the_inverse(
-    length: float, most: float
+    points: int | tuple[int, int], length: float, most: float
 ) -> None:
-    """With a kink at the edge of the contact it would spread by 20 and by 200."""
+    """The extension bends smoothly at the edge, as the cells are long."""
     kernel = BendingSkin(reduced_modulus=1.0, bending=length**3 / 2)
-    assert condition(kernel, 32) < most  # 2.0, 48
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("length", "most"), [(0.1, 4), (1.0, 25)])
-@pytest.mark.parametrize("points", [(56, 18), (18, 56)])
-def test_preconditioner_of_a_skin_that_bends_on_cells_of_one_to_three(
-    length: float, most: float, points: tuple[int, int]
-) -> None:
-    """The extension bends as the cells are long: 6.7 and 33 if it took them for squares."""
-    kernel = BendingSkin(reduced_modulus=1.0, bending=length**3 / 2)
-    assert condition(kernel, points) < most  # 2.4, 13
+    assert condition(kernel, points) < most

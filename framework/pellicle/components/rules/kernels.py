@@ -80,8 +80,10 @@ def values_are_of_their_argument_alone(kernel: Kernel, case: Case) -> str:
         if not hasattr(kernel, name):
             continue
         function, slopes = checked_call(kernel, name), [1.0] + [0.3] * (name == "symbol")
-        each = ([slope * value for slope in slopes] for value in np.split(argument, argument.size))
-        singly = np.concatenate([function(*values) for values in each])
+        singles = (
+            [slope * value for slope in slopes] for value in np.split(argument, argument.size)
+        )
+        singly = np.concatenate([function(*values) for values in singles])
         for shape in ((24,), (4, 6), (2, 3, 4)):
             words = f"{name}() for an argument of shape {shape}"
             expected = singly.reshape(shape)

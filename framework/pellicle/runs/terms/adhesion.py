@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final, NamedTuple
 
@@ -74,11 +75,9 @@ def _force_limit(
 ) -> dict[str, Value]:
     """Return the force [N] for no width of the zone, and the error [N] of that of the step.
 
-    The step is solved again at its depth with two wider zones. The forces differ from that of no
-    zone in proportion to its width, so a line through all three gives the limit (Richardson 1911).
-    The error is the larger of those that the two narrower and the two wider zones give: they differ
-    because the edge lies on cells, and because the widest may reach over half of a small contact.
-    The widest zones of a contact of few cells say too little, so it is at least a share of a pull.
+    The step is solved again at its depth with two wider zones, for `limit_of` the three forces. The
+    widest zones of a contact of few cells say too little, so the error is at least a share of a
+    pull.
     Both are NaN if the contact is lost or no solution is found with a wider zone; the result is
     empty if the interaction has no such limit.
     """
@@ -100,15 +99,27 @@ def _force_limit(
         if not (wider.contact.any() and wider.residual <= solver.tolerance):
             return {"force_extrapolated": np.nan, "force_error": np.nan}
         forces.append(wider.force)
+    limit, error = limit_of(forces)
+    cells = np.sqrt(np.count_nonzero(equilibrium.contact) / np.pi)
+    least = _CELLS_ERROR / cells * max(-equilibrium.force, 0.0)
+    return {"force_extrapolated": limit, "force_error": max(least, error)}
+
+
+def limit_of(forces: Sequence[float]) -> tuple[float, float]:
+    """Return the force [N] for no width of the zone, and the error [N] of that of the step.
+
+    The forces are those of zones 1, 1.5 and 3 times as wide as in the step. They differ from that
+    of no zone in proportion to its width, so a line through all three gives the limit (Richardson
+    1911). The error is the larger of those that the two narrower and the two wider zones give: they
+    differ because the edge lies on cells, and because the widest may reach over half of a small
+    contact.
+    """
     widths = np.array([1.0, *_WIDER])
     weights = np.where(widths > 1, 1.0, _WEIGHT)
     _, limit = np.polyfit(widths, forces, 1, w=weights)
     slopes = np.diff(forces) / np.diff(widths)
     limits = forces[:-1] - slopes * widths[:-1]
-    cells = np.sqrt(np.count_nonzero(equilibrium.contact) / np.pi)
-    least = _CELLS_ERROR / cells * max(-equilibrium.force, 0.0)
-    error = max(least, float(np.abs(limits - equilibrium.force).max()))
-    return {"force_extrapolated": float(limit), "force_error": error}
+    return float(limit), float(np.abs(limits - forces[0]).max())
 
 
 def _pulled_off(run: Run, step: ContactStep, surroundings: AroundContact) -> Caveat:
@@ -139,9 +150,9 @@ def _asperity_jumped(before: State | None, equilibrium: AdhesiveEquilibrium) -> 
     if before is None or not problem.law.needs_contact:
         return False
     patches = before.pressure != 0, equilibrium.pressure != 0
-    for mask, other in (patches, patches[::-1]):
+    for mask, counterpart in (patches, patches[::-1]):
         labels, number = labelled(mask, problem.grid.boundary, 4)
-        if np.unique(labels[mask & other]).size < number:
+        if np.unique(labels[mask & counterpart]).size < number:
             return True
     return False
 

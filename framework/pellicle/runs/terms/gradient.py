@@ -74,7 +74,7 @@ class Gradient:
         known = step.converged and (equilibrium.contact.any() or not equilibrium.zone.any())
         keeps_depth = isinstance(control, Depth)
         compliance = control.compliance if isinstance(control, Depth) else 0.0
-        found: dict[str, Array] = {}
+        derivatives: dict[str, Array] = {}
         for path, name in self.names.items():
             change = response
             if path in self._changes:
@@ -89,11 +89,11 @@ class Gradient:
                 force if keeps_depth or self._searches else 0.0 * change,
                 depth if not keeps_depth or self._searches else 0.0 - compliance * force,
             )
-            found[f"force_by_{name}"] = force if known else np.nan * force
-            found[f"depth_by_{name}"] = depth if known else np.nan * depth
+            derivatives[f"force_by_{name}"] = force if known else np.nan * force
+            derivatives[f"depth_by_{name}"] = depth if known else np.nan * depth
         return step.having(
-            {name: float(value) for name, value in found.items() if np.ndim(value) == 0},
-            fields={name: value for name, value in found.items() if np.ndim(value)},
+            {name: float(value) for name, value in derivatives.items() if np.ndim(value) == 0},
+            fields={name: value for name, value in derivatives.items() if np.ndim(value)},
         )
 
 
