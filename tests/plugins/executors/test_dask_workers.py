@@ -95,7 +95,7 @@ def always_kill(job: Job, say: Say) -> int:
 
 
 def go_on(job: Job, say: Say) -> int:
-    """Do six pieces of work, each kept, with the files locked as those of a run are.
+    """Do twelve pieces of work, each kept, with the files locked as those of a run are.
 
     A piece cannot be interrupted. Return how often the work was begun.
     """
@@ -103,7 +103,7 @@ def go_on(job: Job, say: Say) -> int:
         begun, done = (job.folder / f"{job.number}.{name}" for name in ("begun", "done"))
         with begun.open("a") as file:
             file.write("x")
-        while not done.exists() or done.stat().st_size < 6:
+        while not done.exists() or done.stat().st_size < 12:
             say("a piece")
             time.sleep(0.8)
             with done.open("a") as file:
@@ -222,7 +222,7 @@ def test_run_that_kills_its_worker_is_found_among_others(start_dask: Any) -> Non
     assert outcomes == {jobs[0]: 0, jobs[2]: 2}
 
 
-@pytest.mark.parametrize("lifetime", [["--lifetime", "3s"], []], ids=["lifetime", "SIGTERM"])
+@pytest.mark.parametrize("lifetime", [["--lifetime", "8s"], []], ids=["lifetime", "SIGTERM"])
 def test_worker_that_ends(start_dask: Any, tmp_path: Path, lifetime: list[str]) -> None:
     """Its run goes on elsewhere, once its files are free, and no death is counted."""
     jobs = [Job(i, tmp_path) for i in range(2)]
@@ -240,4 +240,4 @@ def test_worker_that_ends(start_dask: Any, tmp_path: Path, lifetime: list[str]) 
         outcomes = dict(dask(address=address).map(go_on, jobs, report))
     assert any(line.startswith("a worker has ended") for line in lines)
     assert {outcomes[job] for job in jobs} == {1, 2}
-    assert all((tmp_path / f"{job.number}.done").stat().st_size == 6 for job in jobs)
+    assert all((tmp_path / f"{job.number}.done").stat().st_size == 12 for job in jobs)
