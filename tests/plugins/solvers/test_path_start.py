@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import pellicle as pl
-from pellicle.components.interaction import law_of
 from pellicle.contact.load_step import FinishedStep, start_of
 from pellicle.contact.problem import Depth, Force
 from pellicle_plugins.solvers.active_set import ActiveSet
@@ -82,20 +81,14 @@ def test_nothing_is_extrapolated_backwards_or_far(value: float) -> None:
     assert ahead(replace(here, control=Depth(0.101)), path).depth == pytest.approx(0.101)
 
 
-def test_nothing_is_extrapolated_from_one_state_in_a_solid_that_relaxes_or_where_it_sticks() -> (
-    None
-):
-    """What earlier steps leave behind changes the surface too; with a law a descent is followed."""
+def test_nothing_is_extrapolated_from_one_state_or_in_a_solid_that_relaxes() -> None:
+    """What earlier steps leave behind changes the surface too."""
     here = problem("smooth", "free")
     path = steps(here, [0.08, 0.09])
     state = path[-1].state
     assert start_of(here, None, ()) is None
     assert start_of(here, state, path[-1:]) is state
     assert start_of(replace(here, left=np.zeros(here.grid.shape)), state, path) is state
-    linear = pl.interaction("linear", work_of_adhesion=1.0, range=0.1)
-    law = law_of(linear, skin(0.02), here.grid)
-    sticky = pl.Adhesive(here.grid, here.operator, here.profile, here.control, law=law)
-    assert start_of(sticky, state, path) is state
 
 
 def test_force_and_spring_are_extrapolated_by_their_own_control() -> None:

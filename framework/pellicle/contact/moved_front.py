@@ -1,0 +1,63 @@
+"""The start of a load step of a contact that sticks: its front moved on as it moved last."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from pellicle.arrays import Array, Mask
+from pellicle.grid import Grid
+
+from .solution import State
+
+# Cells along the front over which its shift is averaged: a lattice gives each front to half a cell.
+_SMOOTH: Final = 4.0
+# Pressure of cells that join, over the greatest.
+_JOINING: Final = 1e-9
+
+
+def moved_on(before: State, last: State, ratio: float, grid: Grid) -> State:
+    """Return the last state with its front moved by ``ratio`` times its shift since ``before``.
+
+    Along the normal of the front, wall pressure and traction keep their distance from it. It is
+    the last state itself if a contact has no edge, or would vanish.
+    """
+    from scipy.ndimage import gaussian_filter, map_coordinates
+
+    if before.contact.all() or last.contact.all():
+        return last
+    mode = "grid-wrap" if grid.boundary == "periodic" else "nearest"
+    earlier, distance = (_distance(state.contact, grid) for state in (before, last))
+    moved = ratio * (distance - earlier)
+    cell = max(grid.spacing)
+    width = 2 * max(cell, float(np.abs(moved).max(where=np.abs(distance) < 2 * cell, initial=0.0)))
+    near = np.exp(-np.square(distance / width))
+    share = np.maximum(gaussian_filter(near, _SMOOTH, mode=mode), _JOINING)
+    moved = gaussian_filter(moved * near, _SMOOTH, mode=mode) / share
+    places = np.indices(grid.shape, dtype=np.float64)
+    smooth = gaussian_filter(distance, 1.0, mode=mode)
+    for axis, spacing in enumerate(grid.spacing):
+        if grid.shape[axis] > 1:
+            places[axis] += moved * np.gradient(smooth, spacing, axis=axis) / spacing
+    traction, wall = (
+        map_coordinates(values, places, order=1, mode=mode)
+        for values in (last.pressure - last.wall, last.wall)
+    )
+    contact = distance + moved < 0
+    if not contact.any():
+        return last
+    wall = np.where(contact, np.maximum(wall, _JOINING * float(wall.max())), 0.0)
+    return State(wall + traction, wall, last.depth)
+
+
+def _distance(contact: Mask, grid: Grid) -> Array:
+    """Return the distance of each cell from the edge of a contact [m], negative inside."""
+    from scipy.ndimage import distance_transform_edt
+
+    half = 0.5 * max(grid.spacing)
+    outside, inside = (
+        distance_transform_edt(mask, sampling=grid.spacing) - half for mask in (~contact, contact)
+    )
+    distance: Array = np.where(contact, -inside, outside)
+    return distance
