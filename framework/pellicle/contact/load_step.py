@@ -132,9 +132,9 @@ def start_of(
     ``path`` has the last two load steps, the earlier one first; fewer if there are no more.
     Nothing is extrapolated across a reversal of the path, to more than twice the last step, and in
     a solid that relaxes, whose next state also depends on what earlier steps have left behind.
-    With a law, where there may be several equilibria, only the front moves on, but on a bed of
-    springs, each of which may be in either of two: the descent from there ends in the equilibrium
-    that the path leads to.
+    With a law there may be several equilibria, and the descent from the last state ends in the one
+    that the path leads to. Only the front of a law without a range moves on, but on a bed of
+    springs, each of which may be in either of two equilibria.
     """
     if state is None or len(path) < 2 or problem.left is not None:
         return state
@@ -146,9 +146,8 @@ def start_of(
     if not 0 < ratio <= _FARTHEST or not touches:
         return state
     if isinstance(problem, Adhesive):
-        if problem.operator.is_bed:
-            return state
-        return moved_on(before.state, last.state, ratio, problem.grid)
+        has_front = problem.law.needs_contact and not problem.operator.is_bed
+        return moved_on(before.state, last.state, ratio, problem.grid) if has_front else state
     depth = last.state.depth + ratio * (last.state.depth - before.state.depth)
     pressure = _pressure_ahead(problem, before, last, ratio)
     return State(pressure, pressure, depth)
