@@ -133,8 +133,8 @@ def start_of(
     Nothing is extrapolated across a reversal of the path, to more than twice the last step, and in
     a solid that relaxes, whose next state also depends on what earlier steps have left behind.
     With a law there may be several equilibria, and the descent from the last state ends in the one
-    that the path leads to. Only the front of a law without a range moves on, but on a bed of
-    springs, each of which may be in either of two equilibria.
+    that the path leads to. Only the front of a law without a range moves on, and not on a bed
+    of springs, each of which may be in either of two equilibria.
     """
     if state is None or len(path) < 2 or problem.left is not None:
         return state

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
+from pellicle.components.interaction import law_of
 from pellicle.contact.load_step import FinishedStep, start_of
 from pellicle.contact.problem import Depth, Force
 from pellicle_plugins.solvers.active_set import ActiveSet
@@ -40,6 +41,12 @@ def steps(here: pl.Problem, values: list[float]) -> list[FinishedStep]:
         )
         for e in found
     ]
+
+
+def sticking(here: pl.Problem, interaction: Any, kernel: Any) -> pl.Adhesive:
+    """Return the problem with a law."""
+    law = law_of(interaction, kernel, here.grid)
+    return pl.Adhesive(here.grid, here.operator, here.profile, here.control, law=law)
 
 
 def ahead(here: pl.Problem, path: list[FinishedStep]) -> pl.State:
@@ -81,14 +88,32 @@ def test_nothing_is_extrapolated_backwards_or_far(value: float) -> None:
     assert ahead(replace(here, control=Depth(0.101)), path).depth == pytest.approx(0.101)
 
 
-def test_nothing_is_extrapolated_from_one_state_or_in_a_solid_that_relaxes() -> None:
-    """What earlier steps leave behind changes the surface too."""
+def test_nothing_is_extrapolated_from_one_state_in_a_solid_that_relaxes_or_where_it_sticks() -> (
+    None
+):
+    """What earlier steps leave behind changes the surface too; with a law a descent is followed."""
     here = problem("smooth", "free")
     path = steps(here, [0.08, 0.09])
     state = path[-1].state
     assert start_of(here, None, ()) is None
     assert start_of(here, state, path[-1:]) is state
     assert start_of(replace(here, left=np.zeros(here.grid.shape)), state, path) is state
+    linear = pl.interaction("linear", work_of_adhesion=1.0, range=0.1)
+    assert start_of(sticking(here, linear, skin(0.02)), state, path) is state
+
+
+def test_a_front_moves_on_but_not_on_springs() -> None:
+    """With a law without a range a contact that grew grows on, where cells do not yield alone."""
+    here, law = problem("smooth", "free"), pl.interaction("jkr", work_of_adhesion=1e-6)
+    path = steps(here, [0.08, 0.09])
+    state = path[-1].state
+    here = replace(here, control=Depth(0.1))
+    ahead = start_of(sticking(here, law, skin(0.02)), state, path)
+    assert ahead is not None
+    assert ahead.contact.sum() > 1.02 * state.contact.sum()
+    springs = pl.kernel("winkler", foundation=1.0)
+    bed = make(64, "free", springs, SHAPES["smooth"], "depth", 0.1)
+    assert start_of(sticking(bed, law, springs), state, path) is state
 
 
 def test_force_and_spring_are_extrapolated_by_their_own_control() -> None:
