@@ -175,7 +175,7 @@ class Operator:
         stiffness = 1 / along_axes(self.symbol, q)
         return [max(0.0, float(order)) for order in -np.diff(np.log2(stiffness))]
 
-    @property
+    @cached_property
     def is_bed(self) -> bool:
         """Whether cells yield on their own, as on springs or a layer thinner than them."""
         return self.orders(1)[0] < _BED
