@@ -1,8 +1,8 @@
 """The start of a load step of a contact that sticks: its front moved on as it moved last.
 
 A start that lies past a barrier of the energy leads to another equilibrium than the last state
-does. Of 826 random steps of contacts with several edges 11 would have started there, and 4 of 324 of
-a single edge that moves far, but none of 1,842 with a single edge that moves little.
+does. Of 826 random steps of contacts with several edges 11 would have started there, and 4 of 324
+of a single edge that moves far, but none of 1,842 with a single edge that moves little.
 """
 
 from __future__ import annotations
