@@ -1,13 +1,18 @@
-"""Which finished steps of a contact that sticks count as its path. Units are E* = R = w = 1."""
+"""The path of a contact that sticks: its steps, and their starts. Units are E* = R = w = 1."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 
+import numpy as np
 import pytest
 import xarray as xr
 
+from pellicle.contact import load_step
 from pellicle.contact.load_step import end_of
+from pellicle.contact.moved_front import moved_on
+from pellicle.contact.solution import State
 from pellicle.results.record import Steps
 from tests.adhesive_paths import solved
 
@@ -42,3 +47,31 @@ def _points(name: str, at: int, value: bool) -> int:
         step = run.isel(step=[index])
         done.append(step.assign({name: ("step", [value])}) if index == at else step)
     return len(end_of(done.path))
+
+
+def test_a_front_that_was_moved_past_a_barrier_goes_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A contact that is pulled stays on its path, from wherever a step has started.
+
+    From four cells a descent ends without contact where the path has one of over 100.
+    """
+    starts: dict[str, Callable[..., State]] = {
+        "last": lambda before, last, *_: last,
+        "moved": moved_on,
+        "lost": lambda before, last, *_: _four_cells(last),
+    }
+    runs = {}
+    for name, start in starts.items():
+        monkeypatch.setattr(load_step, "moved_on", start)
+        runs[name] = solved(32, 0.0, (0.3, 0.2, 0.05, -0.1))
+    cells = runs["last"]["contact"].sum(("x", "y")).values
+    assert cells[-1] > 100
+    for name in ("moved", "lost"):
+        assert not runs[name]["jumped"][1:].any()
+        np.testing.assert_allclose(runs[name]["energy"], runs["last"]["energy"], rtol=1e-6)
+
+
+def _four_cells(last: State) -> State:
+    middle = slice(last.wall.shape[0] // 2 - 1, last.wall.shape[0] // 2 + 1)
+    wall = np.zeros(last.wall.shape)
+    wall[middle, middle] = last.wall[middle, middle]
+    return State(wall, wall, last.depth)

@@ -60,9 +60,9 @@ class Solver(Component):
     def solve(self, problem: Problem, start: State | None, monitor: Monitor) -> Solution:
         """Return the solution of one load step.
 
-        ``start`` is where the iteration may start: the state at the end of the last step or,
-        without a law, what the last two lead to; None at the first step. The framework computes
-        the residuals of the solution itself; the solver's own estimates are not used.
+        ``start`` is where the iteration may start: the state at the end of the last step or
+        what the last two lead to; None at the first step. The framework computes the residuals of
+        the solution itself; the solver's own estimates are not used.
         """
 
     def response(self, problem: Problem, state: State, monitor: Monitor) -> Array:

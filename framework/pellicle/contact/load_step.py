@@ -13,6 +13,7 @@ from pellicle.arrays import Array
 
 from .caveats import Caveat, ranked
 from .equilibrium import Deformation
+from .moved_front import moved_on
 from .problem import Adhesive, Depth, Unilateral
 from .solution import State, Stop
 
@@ -131,10 +132,11 @@ def start_of(
     ``path`` has the last two load steps, the earlier one first; fewer if there are no more.
     Nothing is extrapolated across a reversal of the path, to more than twice the last step, and in
     a solid that relaxes, whose next state also depends on what earlier steps have left behind.
-    Neither is it with a law, where there may be several equilibria: the descent from the last state
-    ends in the one that the path leads to.
+    With a law there may be several equilibria, and the descent from the last state ends in the one
+    that the path leads to. Only the front of a law without a range moves on, and not on a bed
+    of springs, each of which may be in either of two equilibria.
     """
-    if state is None or len(path) < 2 or problem.left is not None or isinstance(problem, Adhesive):
+    if state is None or len(path) < 2 or problem.left is not None:
         return state
     before, last = path
     reached = [control_of(problem, point.state) for point in (before, last)]
@@ -143,6 +145,11 @@ def start_of(
     touches = before.state.contact.any() and last.state.contact.any()
     if not 0 < ratio <= _FARTHEST or not touches:
         return state
+    if isinstance(problem, Adhesive):
+        if problem.operator.is_bed or not problem.law.needs_contact:
+            return state
+        covered = np.isfinite(problem.profile)
+        return moved_on(before.state, last.state, ratio, problem.grid, covered)
     depth = last.state.depth + ratio * (last.state.depth - before.state.depth)
     pressure = _pressure_ahead(problem, before, last, ratio)
     return State(pressure, pressure, depth)

@@ -17,6 +17,7 @@ from pellicle.config.provenance import provenance
 from pellicle.config.run import Run
 from pellicle.contact.equilibrium import Deformation, equilibrium_of
 from pellicle.contact.load_step import LoadStep, end_of, start_of
+from pellicle.contact.moved_front import is_on_path
 from pellicle.contact.problem import Traction
 from pellicle.contact.solution import Stop
 from pellicle.grid import Grid
@@ -152,5 +153,9 @@ def solve_at(
     problem = setting.problem(target)
     start = start_of(problem, setting.state, setting.path)
     solution = solution_of(solver, problem, start, monitor)
+    if setting.sticks and start is not setting.state and not is_on_path(solution, problem.grid):
+        first = solution.iterations
+        solution = solution_of(solver, problem, setting.state, monitor)
+        solution = replace(solution, iterations=first + solution.iterations)
     equilibrium = equilibrium_of(problem, solution)
     return LoadStep(equilibrium, solution.iterations, solution.stop, solution.jumped)

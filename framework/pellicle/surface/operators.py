@@ -9,7 +9,7 @@ import copy
 import math
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any, Self
+from typing import Any, Final, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,10 @@ from pellicle.checks import read_only
 from pellicle.grid import Grid
 
 from .convolution import Float, Workspace, convolve
+
+# Order of the stiffness at the size of a cell below which the surface is a bed of springs: that of
+# a bonded layer is 0.01, 0.25 and 0.8 where its thickness is 0.4, 0.8 and 1.6 cells.
+_BED: Final = 0.5
 
 Symbol = Callable[[Array, Array], Array]
 """G [m/Pa] of the waves q_x, q_y [rad/m], two arrays of one shape; real and even."""
@@ -170,6 +174,11 @@ class Operator:
         q = np.pi / longest * 0.5 ** np.arange(number + 1, dtype=np.float64)
         stiffness = 1 / along_axes(self.symbol, q)
         return [max(0.0, float(order)) for order in -np.diff(np.log2(stiffness))]
+
+    @cached_property
+    def is_bed(self) -> bool:
+        """Whether cells yield on their own, as on springs or a layer thinner than them."""
+        return self.orders(1)[0] < _BED
 
     def __call__(
         self,

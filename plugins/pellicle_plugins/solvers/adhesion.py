@@ -111,7 +111,7 @@ class AdhesionSolver(ScaledSolver):
         following, contact = traction + missed, state.contact
         on_contact, changes = state.on_contact, _CHANGES
         # On springs a front has no stiffness, and a shift would leave the minimum of each cell.
-        if state.front.length and not on_contact.preconditioner.is_bed:
+        if state.front.length and not problem.operator.is_bed:
             following, contact = state.front.moved(following, missed, state.gain)
         following = np.clip(following, -state.problem.law.strength(), 0.0)
         if not np.array_equal(contact, state.contact):

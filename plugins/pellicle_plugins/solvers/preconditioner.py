@@ -28,10 +28,6 @@ _RETAINED: Final = 0.9
 _HALVINGS: Final = 6
 _COARSEST: Final = 32
 
-# Order of the stiffness at the size of a cell below which the surface is a bed of springs: that of
-# a bonded layer is 0.01, 0.25 and 0.8 where its thickness is 0.4, 0.8 and 1.6 cells.
-_BED: Final = 0.5
-
 
 class CirculantStiffness:
     """K, the multiplication by k(q) = 1/G(q) over its greatest value, in single precision.
@@ -79,9 +75,8 @@ class Preconditioner:
         self._stiffness = parts.stiffness
         self.stiffest = self._stiffness.greatest
         """Stiffness of the stiffest wave [Pa/m]."""
-        self.bends, self.is_bed = bends(parts.order), parts.order < _BED
-        """Whether bending dominates at the size of a cell; whether cells yield on their own, as on
-        springs or a layer thinner than them."""
+        self.bends = bends(parts.order)
+        """Whether bending dominates the stiffness at the size of a cell."""
         self._orders, self._stretch = parts.orders, parts.stretch
         self._lift = np.zeros(self._shape, dtype=np.float32)
 

@@ -43,6 +43,12 @@ def steps(here: pl.Problem, values: list[float]) -> list[FinishedStep]:
     ]
 
 
+def sticking(here: pl.Problem, interaction: Any, kernel: Any) -> pl.Adhesive:
+    """Return the problem with a law."""
+    law = law_of(interaction, kernel, here.grid)
+    return pl.Adhesive(here.grid, here.operator, here.profile, here.control, law=law)
+
+
 def ahead(here: pl.Problem, path: list[FinishedStep]) -> pl.State:
     """Return the state that is extrapolated from a path."""
     start = start_of(here, path[-1].state, path)
@@ -93,9 +99,21 @@ def test_nothing_is_extrapolated_from_one_state_in_a_solid_that_relaxes_or_where
     assert start_of(here, state, path[-1:]) is state
     assert start_of(replace(here, left=np.zeros(here.grid.shape)), state, path) is state
     linear = pl.interaction("linear", work_of_adhesion=1.0, range=0.1)
-    law = law_of(linear, skin(0.02), here.grid)
-    sticky = pl.Adhesive(here.grid, here.operator, here.profile, here.control, law=law)
-    assert start_of(sticky, state, path) is state
+    assert start_of(sticking(here, linear, skin(0.02)), state, path) is state
+
+
+def test_a_front_moves_on_but_not_on_springs() -> None:
+    """With a law without a range a contact that grew grows on, where cells do not yield alone."""
+    here, law = problem("smooth", "free"), pl.interaction("jkr", work_of_adhesion=1e-6)
+    path = steps(here, [0.08, 0.09])
+    state = path[-1].state
+    here = replace(here, control=Depth(0.1))
+    ahead = start_of(sticking(here, law, skin(0.02)), state, path)
+    assert ahead is not None
+    assert ahead.contact.sum() > 1.02 * state.contact.sum()
+    springs = pl.kernel("winkler", foundation=1.0)
+    bed = make(64, "free", springs, SHAPES["smooth"], "depth", 0.1)
+    assert start_of(sticking(bed, law, springs), state, path) is state
 
 
 def test_force_and_spring_are_extrapolated_by_their_own_control() -> None:
