@@ -19,7 +19,7 @@ from .selection.advice import Advice
 from .selection.recipe import TENSION, Answer
 from .words.advice import step
 from .words.names import in_words, words_of
-from .words.story import agreement, calibration, headline, remarks, told, verdict
+from .words.story import agreement, calibration, headline, remarks, told, verdict_in_words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -119,7 +119,7 @@ def data_of_fit(
         "model": {"effects": sorted(selected.types), "words": words_of(selected)},
         "verdict": answer.verdict.value,
         "headline": headline(answer),
-        "comparison": verdict(answer),
+        "comparison": verdict_in_words(answer),
         "tension_needed": answer.tension_needed,
         "at_one_speed": answer.at_one_speed,
         "agreement": agreement(answer, [name for name, _ in curves]),

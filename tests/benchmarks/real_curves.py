@@ -23,10 +23,10 @@ import numpy as np
 
 import pellicle as pl
 from pellicle.errors import PellicleError
+from pellicle_fit.files.choice import has_known_suffix
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.columns import Calibration
 from pellicle_fit.files.measurement import Measurement
-from pellicle_fit.files.readers import has_known_suffix
 from pellicle_fit.files.sources import gather
 
 RADIUS, RATIO = 10e-6, 0.5

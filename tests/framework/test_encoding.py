@@ -13,7 +13,7 @@ import pellicle as pl
 from pellicle.cli.app import app
 from pellicle.files import read_text
 from pellicle.schema.from_file import read_toml
-from pellicle_fit.files.readers import read as read_curves
+from pellicle_fit.files.choice import read as read_curves
 from tests.command import call
 
 CURVE = "position (µm),force (nN)\n0,0\n1,2\n2,5\n"

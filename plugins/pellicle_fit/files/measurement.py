@@ -88,5 +88,5 @@ class Measurement:
         return axes
 
 
-Readers = Mapping[str, Callable[[], Measurement]]
+CurvesByLabel = Mapping[str, Callable[[], Measurement]]
 """What reads each curve of a file, by its label, which is empty where there is one."""

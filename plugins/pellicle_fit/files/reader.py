@@ -18,8 +18,8 @@ from pellicle.errors import PluginError, StorageError
 
 from .columns import Calibration as Calibration
 from .columns import Column, from_columns, lacking, recalibrated
+from .measurement import CurvesByLabel as CurvesByLabel
 from .measurement import Measurement as Measurement
-from .measurement import Readers as Readers
 from .measurement import Site as Site
 from .missing import OPTIONS, MissingInputError
 
@@ -39,7 +39,7 @@ class Reader(Component):
         return True
 
     @abstractmethod
-    def read(self, path: Path, calibration: Calibration) -> Readers:
+    def read(self, path: Path, calibration: Calibration) -> CurvesByLabel:
         """Return what reads each curve of a file, one at a time, by its label.
 
         The label is empty where a file holds one curve. ``calibration`` is what the user

@@ -18,9 +18,9 @@ from pellicle.errors import ConfigError, PellicleError, all_problems
 from pellicle.files import is_file, is_folder
 from pellicle.units import Quantity
 
+from .choice import TEXT, has_known_suffix, is_read, read, suffixes
 from .columns import Calibration
-from .measurement import Measurement, Readers, Site
-from .readers import TEXT, has_known_suffix, is_read, read, suffixes
+from .measurement import CurvesByLabel, Measurement, Site
 from .text_table import FILE, read_list
 
 PLACE = ("x", "y")
@@ -69,7 +69,7 @@ def gather(
     listed, opened = [*_listed(curves, per_file, calibration.columns or {})], 0
     for number, (file, fields, table) in enumerate(listed, 1):
         site: Site | None = None
-        readers: Readers = {}
+        readers: CurvesByLabel = {}
         origin: dict[str, Any] = {}
         source = partial(Source, fields=fields, file=str(file))
         try:

@@ -30,7 +30,7 @@ from pellicle_fit.files.columns import (
     lacking,
     recalibrated,
 )
-from pellicle_fit.files.measurement import Measurement, Readers, Site
+from pellicle_fit.files.measurement import CurvesByLabel, Measurement, Site
 from pellicle_fit.files.missing import OPTIONS, MissingInputError
 from pellicle_fit.files.reader import Reader
 from pellicle_fit.files.text_table import read_table
@@ -67,7 +67,7 @@ class _AFM(Reader):
         with path.open("rb") as file:
             return self.mark in file.read(_BEGINNING)
 
-    def read(self, path: Path, calibration: Calibration) -> Readers:
+    def read(self, path: Path, calibration: Calibration) -> CurvesByLabel:
         """Return what reads each curve by its number."""
         return _read(path, calibration)
 
@@ -133,7 +133,7 @@ class Nova(_AFM, title="NT-MDT"):
             return [head.text for head in heads] == [""] * 3
         return False
 
-    def read(self, path: Path, calibration: Calibration) -> Readers:
+    def read(self, path: Path, calibration: Calibration) -> CurvesByLabel:
         """Return what reads the only curve; what afmformats cannot read is a table."""
         try:
             return _read(path, calibration, is_nt_mdt=True)
@@ -169,7 +169,7 @@ _PAUSES = {3: (1,), 4: (0, 2)}
 """Places of the pauses among the segments of creep and of stress relaxation, by their number."""
 
 
-def _read(path: Path, calibration: Calibration, *, is_nt_mdt: bool = False) -> Readers:
+def _read(path: Path, calibration: Calibration, *, is_nt_mdt: bool = False) -> CurvesByLabel:
     """Return what reads each curve, by its number, one at a time."""
     if find_spec("afmformats") is None:
         raise StorageError(f"{path}: is the file of an instrument; {INSTALL}")

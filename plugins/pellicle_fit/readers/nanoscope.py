@@ -17,7 +17,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from pellicle.arrays import Array
-from pellicle_fit.files.measurement import Measurement, Readers
+from pellicle_fit.files.measurement import CurvesByLabel, Measurement
 from pellicle_fit.files.reader import Calibration, Reader, curve_of, refused, sections_of
 
 _MARK, _END = rb"\*Force file list", rb"\*File list end"
@@ -44,7 +44,7 @@ class NanoScope(Reader, title="Bruker NanoScope"):
         with path.open("rb") as file:
             return file.read(len(_MARK)) == _MARK
 
-    def read(self, path: Path, calibration: Calibration) -> Readers:
+    def read(self, path: Path, calibration: Calibration) -> CurvesByLabel:
         """Return what reads the only curve."""
         return {"": partial(_curve, path, calibration)}
 

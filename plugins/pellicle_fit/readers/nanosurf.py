@@ -15,7 +15,7 @@ from typing import ClassVar, Literal, NamedTuple
 import numpy as np
 
 from pellicle.arrays import Array, Mask
-from pellicle_fit.files.measurement import Measurement, Readers
+from pellicle_fit.files.measurement import CurvesByLabel, Measurement
 from pellicle_fit.files.reader import Calibration, Reader, curve_of, refused, sections_of
 
 _END = b"\r\n#!"
@@ -60,7 +60,7 @@ class Nanosurf(Reader, title="Nanosurf"):
             beginning = file.read(_LONGEST if path.stat().st_size < _LONGEST else 1 << 20)
         return beginning.startswith(b"[DataSet]") and _FORWARD.encode() in beginning
 
-    def read(self, path: Path, calibration: Calibration) -> Readers:
+    def read(self, path: Path, calibration: Calibration) -> CurvesByLabel:
         """Return what reads each curve by its number, from 0."""
         try:
             sections, channels = _content(path)

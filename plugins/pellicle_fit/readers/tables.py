@@ -13,6 +13,7 @@ import numpy as np
 
 from pellicle.errors import ConfigError, StorageError
 from pellicle.units import readable
+from pellicle_fit.files.choice import TEXT
 from pellicle_fit.files.columns import (
     EXAMPLE,
     NAMES,
@@ -23,10 +24,9 @@ from pellicle_fit.files.columns import (
     lacking,
     recalibrated,
 )
-from pellicle_fit.files.measurement import Measurement, Readers
+from pellicle_fit.files.measurement import CurvesByLabel, Measurement
 from pellicle_fit.files.missing import missing_in
 from pellicle_fit.files.reader import Reader
-from pellicle_fit.files.readers import TEXT
 from pellicle_fit.files.text_table import read_table
 from pellicle_fit.files.tree import read_tree
 
@@ -46,7 +46,7 @@ class Table(Reader, title="a table"):
             return is_curve(tables[""].keys())
         return True
 
-    def read(self, path: Path, calibration: Calibration) -> Readers:
+    def read(self, path: Path, calibration: Calibration) -> CurvesByLabel:
         """Return what reads the only curve."""
         try:
             return _curves(read_table, path, calibration)
@@ -65,14 +65,14 @@ class Arrays(Reader, title="named arrays"):
     suffixes: ClassVar[tuple[str, ...]] = (".h5", ".hdf5", ".nc", ".mat")
     takes_columns: ClassVar[bool] = True
 
-    def read(self, path: Path, calibration: Calibration) -> Readers:
+    def read(self, path: Path, calibration: Calibration) -> CurvesByLabel:
         """Return what reads each curve by the name of its group."""
         return _curves(read_tree, path, calibration)
 
 
 def _curves(
     read: Callable[[Path, Mapping[str, str]], Any], path: Path, calibration: Calibration
-) -> Readers:
+) -> CurvesByLabel:
     """Return what makes each curve of the tables in a file, and raises what it lacks."""
     mapped = calibration.columns or {}
     tables, heads, stated = read(path, mapped)

@@ -85,7 +85,7 @@ def shares(uncertainty: Mapping[Any, float]) -> str:
     return listed([f"{words(name)} to {100 * x:.3g} %" for name, x in uncertainty.items()])
 
 
-def verdict(answer: Answer) -> str:
+def verdict_in_words(answer: Answer) -> str:
     """Return whether what is asked for is needed, with the strongest rival, in plain words."""
     curves = "these curves" if len(answer.judgements) > 1 else "this curve"
     reason = _reason(answer)

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from scipy.io import savemat
 
 import pellicle as pl
+from pellicle_fit.files.choice import read
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.columns import Calibration
 from pellicle_fit.files.measurement import Measurement
-from pellicle_fit.files.readers import read
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 

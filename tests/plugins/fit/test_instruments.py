@@ -13,11 +13,11 @@ import pytest
 from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle_fit.files.choice import read
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.columns import Calibration
 from pellicle_fit.files.measurement import Measurement, Segment
 from pellicle_fit.files.reader import Reader
-from pellicle_fit.files.readers import read
 from pellicle_fit.testing import check_reader
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.plugins.fit import instruments

@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle_fit.files.choice import read
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.measurement import Measurement, Segment
 from pellicle_fit.files.passes import passes
-from pellicle_fit.files.readers import read
 from tests.plugins.fit import instruments
 
 Array = NDArray[np.float64]

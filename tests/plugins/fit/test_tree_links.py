@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import pellicle as pl
+from pellicle_fit.files.choice import read
 from pellicle_fit.files.columns import Calibration
-from pellicle_fit.files.readers import read
 from pellicle_fit.files.sources import gather
 from pellicle_fit.files.tree import read_tree
 

@@ -12,7 +12,7 @@ from pellicle.errors import ConfigError, StorageError
 from pellicle.files import is_file, is_folder
 
 from .columns import Calibration
-from .measurement import Readers
+from .measurement import CurvesByLabel
 from .reader import Reader
 
 TEXT = (".csv", ".tsv", ".txt")
@@ -26,7 +26,7 @@ def suffixes() -> tuple[str, ...]:
     return tuple(sorted({suffix for reader in _readers() for suffix in reader.suffixes}))
 
 
-def read(path: Path, calibration: Calibration | None = None) -> Readers:
+def read(path: Path, calibration: Calibration | None = None) -> CurvesByLabel:
     """Return functions that read the curves of a file, and raise what this one does.
 
     The columns of the calibration name those of a table, and the arrays of an HDF5 or MATLAB file.
