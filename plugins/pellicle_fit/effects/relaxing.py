@@ -27,6 +27,10 @@ _MODULI = 6
 """Effective moduli between which the force under a tension is interpolated."""
 _TOGETHER = 12
 """Trials whose courses are computed at once, as memory near the processor holds them."""
+_BENT = 0.05
+"""Least distance of a path with a dwell from a straight one, over its depth."""
+_WHILE = 0.1
+"""Time over which velocities are compared, over that to where a path is furthest from straight."""
 _GRAZING = 1e-3
 """Depth over the way to which a path without a touch is raised."""
 _BESIDE_TENSION = 0.03
@@ -154,10 +158,13 @@ class Relaxing(Responds):
         start, end = np.where(z[:, 0] <= 0, crossing, before)[:, None], time[-1]
         # Dense after first touch, and after the start of a dwell, where the path bends most.
         way = z / np.maximum(z[:, -1:], 1e-300) - (time - start) / np.maximum(end - start, 1e-300)
-        top = time[np.argmax(np.where(time > start, way, -np.inf), axis=1)][:, None]
-        top = np.where(top > start, top, end)
-        dwells = end - top >= 0.1 * (top - start)
-        top = np.where(dwells, top, end)
+        way = np.where(time > start, way, -np.inf)
+        top = time[np.argmax(way, axis=1)][:, None]
+        dwells = (end - top >= 0.1 * (top - start)) & (way.max(axis=1, keepdims=True) > _BENT)
+        turns = [
+            _turn(time, row, s, t) for row, s, t in zip(z, start[:, 0], top[:, 0], strict=True)
+        ]
+        top = np.where(dwells, np.array(turns)[:, None], end)
         ramp = np.linspace(0, 1, _FEW_NODES if curve.is_rough else _NODES)
         nodes = start + (top - start) * ramp**2
         if dwells.any():
@@ -235,6 +242,17 @@ class Relaxing(Responds):
         """Return ∫ E(t − t′) dt′ / E* [s] over intervals of times, of shape (k, at, intervals)."""
         sums = self.primitive(np.maximum(at[:, :, None] - times[:, None, :], 0.0))
         return -np.diff(sums, axis=2)
+
+
+def _turn(time: Array, depth: Array, start: float, bend: float) -> float:
+    """Return when a path turns into its dwell, no later than where it is furthest from straight.
+
+    There the velocity falls most, from a while before to as long after.
+    """
+    reach = _WHILE * max(bend - start, 0.0)
+    before, after = (np.interp(time + way, time, depth) for way in (-reach, reach))
+    falls = np.where((time > start) & (time <= bend), 2 * depth - before - after, -np.inf)
+    return float(time[np.argmax(falls)])
 
 
 @cache

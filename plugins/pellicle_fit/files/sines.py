@@ -52,8 +52,10 @@ class _Harmonics(NamedTuple):
     """Standard deviation of the parts of both."""
     sines: Array
     """What oscillates in base and force, of shape (2, rows)."""
-    levels: tuple[float, float]
-    """The slow course of the base at the first and at the last row."""
+    levels: Array
+    """The slow course of the base at the first and at the last row, of shape (2,)."""
+    slopes: Array
+    """Its velocity over the first and over the last cycle [m/s], of shape (2,)."""
 
 
 class Separated(NamedTuple):
@@ -222,11 +224,13 @@ def _ends(
     """
     middle, size = (time[rows[0]] + time[rows[-1]]) / 2, abs(found.base)
     ends = []
-    for row, level, way in zip((rows[0], rows[-1]), found.levels, (-1, 1), strict=True):
+    of_ends = zip((rows[0], rows[-1]), found.levels, found.slopes, (-1, 1), strict=True)
+    for row, level, slope, way in of_ends:
         beyond = np.arange(row, -1 if way < 0 else time.size, way)
         beyond = beyond[np.abs(time[beyond] - time[row]) < reach]
         turn = np.exp(2j * np.pi * frequency * (time[beyond] - middle))
-        off = base[beyond] - level - (found.base * turn).real
+        course = level + slope * (time[beyond] - time[row])
+        off = base[beyond] - course - (found.base * turn).real
         leaves = np.flatnonzero(np.abs(off) > _LEAVES * size)
         ends.append(int(beyond[leaves[0]] - way if leaves.size else beyond[-1]))
     return ends[0], ends[1]
@@ -250,8 +254,10 @@ def _harmonics(
     deviations = [_deviation(time, r, frequency, beside) * freedom**0.5 for r in residual.T]
     oscillates = (waves[:, :4] @ weights[:4]).T
     course_of_base = course @ weights[waves.shape[1] :, 0]
-    levels = float(course_of_base[0]), float(course_of_base[-1])
-    return _Harmonics(base, force, (deviations[0], deviations[1]), oscillates, levels)
+    ends, cycle = time[[0, -1]], np.array([1.0, -1.0]) / frequency
+    levels, inside = course_of_base[[0, -1]], np.interp(ends + cycle, time, course_of_base)
+    slopes = (inside - levels) / cycle
+    return _Harmonics(base, force, (deviations[0], deviations[1]), oscillates, levels, slopes)
 
 
 def _deviation(time: Array, residual: Array, frequency: float, beside: Sequence[float]) -> float:

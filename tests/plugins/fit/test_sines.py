@@ -162,6 +162,21 @@ def test_hold_of_nearly_all_rows_is_no_approach() -> None:
     assert found.time[-1] == pytest.approx(RAMP, abs=2 / RATE)
 
 
+def test_sines_of_a_solid_that_creeps_leave_its_course() -> None:
+    """Where a base creeps by many amplitudes, what a sine begins or ends in is left out as well."""
+    time = np.arange(-0.5, 9.0, 1 / RATE)
+    creeps = TOUCH + DEPTH * (np.minimum(time, 1) + 0.4 * np.log1p(np.maximum(time - 1, 0.0)))
+    force = 1e-9 * np.clip(time, 0.0, 1.0)
+    turn = np.where((time >= 3) & (time < 8), np.exp(4j * np.pi * (time - 3)), 0.0)
+    tip, force = creeps + AMPLITUDE * turn.imag, force + AMPLITUDE * (2e-3 * turn).imag
+    found = clean(Measurement(tip, force, time=time), "approach+hold", (2.0,))
+    assert found.sines[0].stiffness == pytest.approx(2e-3, rel=0.01)
+    assert found.time is not None
+    off = found.position - np.interp(found.time, time, creeps)
+    assert np.max(np.abs(off)) < 0.35 * AMPLITUDE
+    assert np.sum(np.abs(off) > 0.05 * AMPLITUDE) < 0.1 * RATE / 2
+
+
 def test_lag_of_the_force_is_taken_off() -> None:
     """A lag turns the phase by ωt, and given it turns it back."""
     late, lag = 2, 2 / RATE
