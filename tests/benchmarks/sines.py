@@ -98,13 +98,16 @@ def curve(law: Law, tension: float, hold: str) -> tuple[Any, Any, Any, Any]:
         at = (time >= start) & (time < start + CYCLES / f)
         k = int(np.flatnonzero(at).mean())
         length = 2 * tension / (share[k] * MODULUS)
-        slope = BEAD.force_curve(depth[[k]], length).by_depth
+        mean = np.mean(depth[at], keepdims=True)
+        slope = BEAD.force_curve(mean, length).by_depth
         radius = punch_radius(slope, length)[0]
         modulus = MODULUS * law.modulus(np.array([2j * np.pi * f]))
         (stiffness,) = dynamic_punch_stiffness(radius, modulus, tension)
         turn = np.exp(2j * np.pi * f * (time[at] - start))
+        # A contact that creeps stiffens as its radius grows.
+        wider = np.sqrt(depth[at] / mean)
         depth[at] += AMPLITUDE * turn.imag
-        force[at] += AMPLITUDE * (stiffness * turn).imag
+        force[at] += AMPLITUDE * wider * (stiffness * turn).imag
         told.append(stiffness)
     return time, TOUCH + depth, force, np.array(told)
 
