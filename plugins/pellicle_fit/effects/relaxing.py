@@ -29,10 +29,12 @@ _TOGETHER = 12
 """Trials whose courses are computed at once, as memory near the processor holds them."""
 _BENT = 0.05
 """Least distance of a path with a dwell from a straight one, over its depth."""
+_BRIEFEST = 1e-3
+"""Least time from touch to a dwell, over that in contact."""
 _WHILE = 0.1
 """Time over which velocities are compared, over that to where a path is furthest from straight."""
-_GRAZING = 1e-3
-"""Depth over the way to which a path without a touch is raised."""
+_NO_TOUCH, _GRAZING = 1e-9, 1e-3
+"""Depth over the way that is no touch but rounding, and to which a path without one is raised."""
 _BESIDE_TENSION = 0.03
 """Error of the effective modulus beside a tension, against solutions of the whole problem."""
 _EARLIEST = 1e-4
@@ -149,7 +151,7 @@ class Relaxing(Responds):
         loading, clock = ~curve.moves_out, curve.clock
         time, whole = clock[loading], depth
         z = np.maximum.accumulate(depth[:, loading], axis=1)
-        touches = z[:, -1:] > 0
+        touches = z[:, -1:] > _NO_TOUCH * np.ptp(z, axis=1, keepdims=True)
         # A path without a touch, which counts for nothing, is raised until it has one.
         lift = np.where(touches, 0.0, _GRAZING * np.ptp(z, axis=1, keepdims=True) - z[:, -1:])
         z, depth = z + lift, depth + lift
@@ -164,7 +166,9 @@ class Relaxing(Responds):
         turns = [
             _turn(time, row, s, t) for row, s, t in zip(z, start[:, 0], top[:, 0], strict=True)
         ]
-        top = np.where(dwells, np.array(turns)[:, None], end)
+        # Of a trial that touches as it dwells, nodes would be one within rounding.
+        turn = np.maximum(np.array(turns)[:, None], start + _BRIEFEST * (end - start))
+        top = np.where(dwells, turn, end)
         ramp = np.linspace(0, 1, _FEW_NODES if curve.is_rough else _NODES)
         nodes = start + (top - start) * ramp**2
         if dwells.any():

@@ -27,9 +27,10 @@ _EDGE = 0.75
 """Share of what is seen at once by which the middle of a sine is longer than where it is steady."""
 _FEWEST_CYCLES, _FEWEST_ROWS = 3.0, 5.0
 """Least number of whole cycles of a sine, and of rows in a cycle."""
-_DENSEST, _OFF, _CLEAR = 0.01, 0.1, 10.0
-"""Quantile of the steps of time that is the shortest; a frequency off by more is another; amplitude
-over its noise that is one."""
+_DENSEST, _DENSER = 0.01, 100.0
+"""Quantile of the steps of time that is the shortest, and how much longer their mean may be."""
+_OFF, _CLEAR = 0.1, 10.0
+"""Part by which another frequency is off, and amplitude over noise of what is no noise."""
 _TAIL = 0.975
 """Below which probability the upper end of an interval lies."""
 _REFINED = 2
@@ -91,7 +92,9 @@ def separate(
     """
     if time is None:
         raise ConfigError("need the time of each row; give a column of time", "frequencies")
-    most = 1 / (_FEWEST_ROWS * float(np.quantile(np.diff(time), _DENSEST)))
+    steps = np.diff(time)
+    shortest = max(float(np.quantile(steps, _DENSEST)), float(np.mean(steps)) / _DENSER)
+    most = 1 / (_FEWEST_ROWS * shortest)
     if (fastest := max(frequencies)) > most:
         raise ConfigError(_too_fast(fastest, most), "frequencies")
     softness = 1 / stiffness if stiffness else 0.0

@@ -359,6 +359,16 @@ def test_force_of_a_hold_in_closed_form(exponent: float) -> None:
     np.testing.assert_allclose(force, exact, atol=1e-3 * exact.max())
 
 
+def test_a_touch_by_rounding_is_none() -> None:
+    """A search that tries the deepest row as contact point gets a finite force, and no warning."""
+    time = np.linspace(-0.5, 1.0, 100)
+    depth = DEPTH * time + TOUCH
+    curve = Curve(depth, depth, BEAD, time, np.zeros(time.size, bool))
+    deepest = float(np.nextafter(depth[-1], 0.0))
+    solid = Solid(reduced_modulus=MODULUS, contact_point=deepest)
+    assert np.all(np.abs(Explanation(solid, (ZENER,)).force(curve)) < 1e-20)
+
+
 def test_means_of_a_hold_are_least_where_its_rows_are() -> None:
     """A solid that relaxes within the first hundredth of a hold is followed by its means."""
     time = np.linspace(-0.5, 29, 5900)
