@@ -23,7 +23,7 @@ def share_fits(monkeypatch: pytest.MonkeyPatch) -> None:
         """Return the answer to equal arguments, if there is one."""
         arrays = [(c.position, c.force, c.time, c.unloading) for c in curves]
         rows = [[a if a is None else a.tolist() for a in columns] for columns in arrays]
-        bodies = [(curve.indenter, curve.stiffness) for curve in curves]
+        bodies = [(curve.indenter, curve.stiffness, curve.sines) for curve in curves]
         key = repr((rows, bodies, effects, options))
         if key not in answers:
             answers[key] = answer(curves, *effects, **options)
