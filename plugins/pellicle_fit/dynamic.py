@@ -22,6 +22,8 @@ from .explanation import Explanation
 
 _STEP = 1e-4
 """Step of derivatives, over the depth or the force."""
+_OF_SINES = 0.01
+"""Error of the stiffness of a sine over itself, as instruments oscillate."""
 _SHALLOW = 1e-6
 """Least depth of a sine, over the range of positions."""
 _FURTHEST = 8.0
@@ -62,14 +64,24 @@ def recorded_stiffness(explanation: Explanation, curve: Curve) -> ComplexArray:
     return np.asarray(held.gain * stiffness / (1 + stiffness * (held.softness + held.bends)))
 
 
+def misfits(explanation: Explanation, curve: Curve) -> ComplexArray:
+    """Return recorded less measured stiffness of the sines of a curve, over its deviation.
+
+    It has the shape (m,), or (k, m) of k trials.
+    """
+    measured = curve.sine_stiffness
+    noise = np.array([sine.deviation for sine in curve.sines])
+    deviation = np.hypot(noise, _OF_SINES * np.abs(measured))
+    return np.asarray((recorded_stiffness(explanation, curve) - measured) / deviation)
+
+
 def complex_moduli(explanation: Explanation, curve: Curve) -> ComplexArray:
     """Return the complex moduli E*(ω) [Pa] that the measured sines of a curve tell.
 
     Of the explanation only the contact counts, not how the solid relaxes.
     """
     held = _held(explanation, curve)
-    measured = np.array([sine.stiffness for sine in curve.sines])
-    compliance = held.gain / measured - held.softness - held.bends
+    compliance = held.gain / curve.sine_stiffness - held.softness - held.bends
     stiffness = 1 / compliance - held.beside
     if held.tensed_radius is None:
         return np.asarray(held.contact.modulus * stiffness / _stiffness(held, held.contact.modulus))
@@ -172,9 +184,11 @@ def _tensed_radius(contact: Contact, depth: Array, load: Array) -> Array:
         return replace(flat, modulus=modulus * np.exp(log))
 
     for _ in range(_STEPS):
-        short = log_load - _log(of(log).force(deep))
-        rate = (_log(of(log + _STEP).force(deep)) - _log(of(log).force(deep))) / _STEP
-        log = np.clip(log + short / np.maximum(rate, _LEAST_RATE), -_FURTHEST, _FURTHEST)
+        here = _log(of(log).force(deep))
+        rate = (_log(of(log + _STEP).force(deep)) - here) / _STEP
+        log = np.clip(
+            log + (log_load - here) / np.maximum(rate, _LEAST_RATE), -_FURTHEST, _FURTHEST
+        )
     return np.asarray(of(log).punch(deep)[2].reshape(shape))
 
 

@@ -125,6 +125,11 @@ class Curve:
         return curve
 
     @cached_property
+    def sine_stiffness(self) -> NDArray[np.complex128]:
+        """K′ + iK″ of the sines [N/m], of shape (m,)."""
+        return np.array([sine.stiffness for sine in self.sines], dtype=complex)
+
+    @cached_property
     def held(self) -> Curve:
         """The states about which sines oscillate, a row each."""
         position, force, time = np.array([(s.position, s.force, s.time) for s in self.sines]).T

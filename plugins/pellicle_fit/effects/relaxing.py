@@ -163,12 +163,11 @@ class Relaxing(Responds):
         way = np.where(time > start, way, -np.inf)
         top = time[np.argmax(way, axis=1)][:, None]
         dwells = (end - top >= 0.1 * (top - start)) & (way.max(axis=1, keepdims=True) > _BENT)
-        turns = [
-            _turn(time, row, s, t) for row, s, t in zip(z, start[:, 0], top[:, 0], strict=True)
-        ]
-        # Of a trial that touches as it dwells, nodes would be one within rounding.
-        turn = np.maximum(np.array(turns)[:, None], start + _BRIEFEST * (end - start))
-        top = np.where(dwells, turn, end)
+        bends, top = top[:, 0], np.full_like(top, end)
+        for k in np.flatnonzero(dwells).tolist():
+            # Of a trial that touches as it dwells, nodes would be one within rounding.
+            least = start[k] + _BRIEFEST * (end - start[k])
+            top[k] = np.maximum(_turn(time, z[k], start[k, 0], bends[k]), least)
         ramp = np.linspace(0, 1, _FEW_NODES if curve.is_rough else _NODES)
         nodes = start + (top - start) * ramp**2
         if dwells.any():

@@ -10,13 +10,12 @@ from scipy.special import ndtri
 
 from pellicle.arrays import Array
 from pellicle_fit.contact.curve import Curve
-from pellicle_fit.dynamic import complex_moduli, recorded_stiffness
+from pellicle_fit.dynamic import complex_moduli, misfits, recorded_stiffness
 from pellicle_fit.effect import ComplexArray
 
 from .candidate import Candidate
 from .intervals import CONFIDENCE, Estimate
 from .noise import CHANCE
-from .objective import OF_SINES
 
 _STEP = 1e-4
 """Step of derivatives by coordinates, in those of the order of 1."""
@@ -42,7 +41,8 @@ def of_sines(fit: Candidate, number: int) -> list[dict[str, Estimate]]:
     curve = fit.whole[number]
     if not curve.sines:
         return []
-    stiffness, deviations = _measured(curve)
+    stiffness = curve.sine_stiffness
+    deviations = np.array([sine.deviation for sine in curve.sines])
     modulus, of_modulus = _moduli(fit, number, curve, deviations)
     found = []
     for k, sine in enumerate(curve.sines):
@@ -76,23 +76,15 @@ def misfit(fit: Candidate, number: int) -> Misfit | None:
     curve = fit.whole[number]
     if not curve.sines:
         return None
-    stiffness, deviations = _measured(curve)
-    explained = recorded_stiffness(fit.known[number], curve)
-    far = np.abs(stiffness - explained) / np.hypot(deviations, OF_SINES * np.abs(stiffness))
+    known = fit.known[number]
+    far = np.abs(misfits(known, curve))
     k = int(np.argmax(far))
     # χ² of two degrees of freedom, of the furthest of some.
     limit = np.sqrt(-2 * np.log(CHANCE / far.size))
     if far[k] < limit:
         return None
-    return Misfit(curve.sines[k].frequency, complex(stiffness[k] / explained[k] - 1))
-
-
-def _measured(curve: Curve) -> tuple[ComplexArray, Array]:
-    """Return stiffnesses [N/m], and the deviation of their parts."""
-    return (
-        np.array([sine.stiffness for sine in curve.sines]),
-        np.array([sine.deviation for sine in curve.sines]),
-    )
+    explained = recorded_stiffness(known, curve)[k]
+    return Misfit(curve.sines[k].frequency, complex(curve.sine_stiffness[k] / explained - 1))
 
 
 def _moduli(

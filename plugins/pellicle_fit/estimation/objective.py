@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.arrays import Array
-from pellicle_fit.dynamic import recorded_stiffness
+from pellicle_fit.dynamic import misfits
 from pellicle_fit.effect import Records, Responds, Weighed
 from pellicle_fit.explanation import Balance, columns_are_rows
 from pellicle_fit.strangers import is_own
@@ -22,8 +22,6 @@ from .search import Minimum, descend
 
 _STEP = 1e-6
 """Step of derivatives by differences, in coordinates of the order of 1."""
-OF_SINES = 0.01
-"""Error of the stiffness of a sine over itself, as instruments oscillate."""
 
 
 class Trials(NamedTuple):
@@ -96,20 +94,17 @@ class Objective(Coordinates):
 
     def _of_sines(self, at: Array) -> Array:
         """Return terms of sines of all curves, two of each, of shape (k, terms)."""
-        found = [np.empty((len(at), 0))]
+        terms = [np.empty((len(at), 0))]
         for i, curve in enumerate(self.curves):
             if not curve.sines:
                 continue
-            measured = np.array([sine.stiffness for sine in curve.sines])
-            noise = np.array([sine.deviation for sine in curve.sines])
-            deviation = np.hypot(noise, OF_SINES * np.abs(measured))
             if self.takes_columns:
-                own = recorded_stiffness(self.known(at, i), curve)
+                own = misfits(self.known(at, i), curve)
             else:
-                own = np.array([recorded_stiffness(self.known(row, i), curve) for row in at])
-            off = (np.broadcast_to(own, (len(at), measured.size)) - measured) / deviation
-            found += [off.real, off.imag]
-        return np.concatenate(found, axis=1)
+                own = np.array([misfits(self.known(row, i), curve) for row in at])
+            off = np.broadcast_to(own, (len(at), len(curve.sines)))
+            terms += [off.real, off.imag]
+        return np.concatenate(terms, axis=1)
 
     @cached_property
     def _weighed(self) -> list[tuple[int, Slot, Weighed]]:

@@ -263,7 +263,7 @@ def answer(
     decided = decision(fits, of_target, inadequate=inadequate, margin=margin)
     selected = choice(fits, of_target, decided)
     undescribed = decided.verdict is Verdict.UNDESCRIBED
-    if not_weighed and not any(explanation.has(selected, not undescribed) for explanation in like):
+    if not_weighed and not any(neighbour.has(selected, not undescribed) for neighbour in like):
         return answer(curves, model, sets, common=common, fix=fix, uncertainty=uncertainty)
     agreement = agreement_of(fits[selected])
     threshold *= agreement.factor

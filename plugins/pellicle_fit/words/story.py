@@ -152,14 +152,14 @@ def _named(fits: Sequence[Candidate]) -> str:
 
 def agreement(answer: Answer, names: Sequence[str]) -> str:
     """Return whether several curves agree on what they share; empty for one."""
-    verdict = answer.agreement
-    if not verdict.degrees:
+    pool = answer.agreement
+    if not pool.degrees:
         return ""
-    if verdict.factor == 1:
+    if pool.factor == 1:
         return "the curves agree on what they share"
-    wider = decimal(np.sqrt(verdict.factor), 2)
+    wider = decimal(np.sqrt(pool.factor), 2)
     return (
-        f"the curves do not agree on what they share, {names[verdict.worst]} least of all; the "
+        f"the curves do not agree on what they share, {names[pool.worst]} least of all; the "
         f"intervals are {wider} times wider for it"
     )
 
