@@ -28,7 +28,7 @@ from pellicle.components import FromRegistry, Prescription
 from pellicle.components.installed import registry
 from pellicle.components.prescription import OPTIONS
 from pellicle.errors import ConfigError, Problem, all_problems, shown
-from pellicle.schema.messages import nearest
+from pellicle.schema.messages import no_field
 from pellicle.schema.model import Model
 from pellicle.units import Quantity
 
@@ -245,7 +245,7 @@ def fields_from(table: Mapping[str, Any], interaction: bool = True) -> dict[str,
             options = dict(Options(**{name: data[name] for name in OPTIONS if name in data}))
         for name in filterfalse(keys.__contains__, data):
             with within(name):
-                raise ConfigError(f"is not a field here; {nearest(name, keys)}")
+                raise ConfigError(no_field(name, keys))
     return {"prescription": prescription, "path": path, **options}
 
 
@@ -287,6 +287,5 @@ def prescription_in(data: Mapping[str, Any]) -> type[Prescription]:
         try:
             registry().find("prescription", key)
         except ConfigError:
-            message = f"is not a field here; {nearest(key, [*types, *OPTIONS])}"
-            problems.append(Problem(key, message))
+            problems.append(Problem(key, no_field(key, [*types, *OPTIONS])))
     raise ConfigError(problems or f"prescribes nothing; {remedy}")

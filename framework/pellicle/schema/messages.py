@@ -20,6 +20,11 @@ def nearest(word: object, candidates: Iterable[str]) -> str:
     return f"{hint}{' ' if hint else ''}Known: {', '.join(names) or 'none'}"
 
 
+def no_field(name: object, candidates: Iterable[str]) -> str:
+    """Return the message that a name is no field, with what comes nearest."""
+    return f"is not a field here; {nearest(name, candidates)}"
+
+
 def similar(word: object, candidates: Iterable[str]) -> str:
     """Return ``did you mean 'x'?`` if one of the known words is similar, or an empty text."""
     names, word = sorted(candidates), str(word)
@@ -68,7 +73,7 @@ def _translated(model: type[BaseModel], detail: ErrorDetails, field: str) -> Ite
             message = f"is missing; give it: {_description(model, field)}".rstrip(": ")
         case "extra_forbidden":
             candidates = [name for name in model.model_fields if name != "type"]
-            message = f"is not a field here; {nearest(field, candidates)}"
+            message = no_field(field, candidates)
         case "value_error":
             message = str(cause)
         case "literal_error":
