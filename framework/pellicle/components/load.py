@@ -63,6 +63,13 @@ class Load(Component):
         """Whether it has a line force that is as wide as the cells, for want of a width."""
         return False
 
+    def cells_across(self, dx: float, dy: float) -> float:
+        """Return how many cells of dx × dy [m] lie across its finest part; infinite if it has none.
+
+        Asked of a load with one value of each field. Where it is below 4 the step says so.
+        """
+        return float("inf")
+
     @property
     def varied(self) -> LoadPath | None:
         """The field that varies; None if none does."""

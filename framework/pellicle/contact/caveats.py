@@ -117,6 +117,11 @@ class Status(Enum):
         "off; use more points, or a longer range",
         "the cells are too coarse for this contact",
     )
+    COARSE_LOAD = (
+        "converged, but the finest part of the load is {across:.1f} cells wide, where it takes "
+        "{least:g}: the surface near it may be far off; use more points, or a smaller grid.size",
+        "the cells are too coarse for this load",
+    )
     STEEP = (
         "converged, but slopes in contact reach {slope:.2f}, and the theory is for slopes up to "
         "{most:g}: force and area are those of the model, not of the experiment",
@@ -170,6 +175,7 @@ class Status(Enum):
             Status.FAILED: "failed",
             Status.COARSE: "too coarse",
             Status.COARSE_ZONE: "too coarse",
+            Status.COARSE_LOAD: "too coarse",
         }.get(self, usual)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Annotated, Literal
 
 import numpy as np
@@ -32,6 +33,10 @@ class Ridge(Line):
             description="distance of the two lines of a stripe of liquid [m]; one line if absent",
         ),
     ] = None
+
+    def cells_across(self, dx: float, dy: float) -> float:
+        """Return how many cells lie across the width or the stripe, whichever is less."""
+        return min(self.width or inf, self.stripe or inf) / dx
 
     def traction(self, x: Array, y: Array) -> Array:
         """Return the traction [Pa] on each cell; that of a stripe has the sum 0."""

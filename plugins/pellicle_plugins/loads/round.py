@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import asinh, pi, sinh, tan
+from math import asinh, inf, pi, sinh, tan
 from typing import Annotated, Literal, Self
 
 import numpy as np
@@ -31,6 +31,10 @@ class Line(Load):
         """Whether there is no width."""
         return self.width is None
 
+    def cells_across(self, dx: float, dy: float) -> float:
+        """Return how many cells lie across the width, if there is one."""
+        return (self.width or inf) / max(dx, dy)
+
 
 LineForce = Annotated[
     float,
@@ -47,6 +51,10 @@ class Ring(Line):
     radius: Annotated[Length, Field(description="radius [m]")]
     line_force: LineForce
 
+    def cells_across(self, dx: float, dy: float) -> float:
+        """Return how many cells lie across the diameter or the width, whichever is less."""
+        return min(super().cells_across(dx, dy), 2 * self.radius / max(dx, dy))
+
     def traction(self, x: Array, y: Array) -> Array:
         """Return the traction [Pa] on each cell, 2πR times the line force in sum."""
         return on_circle(x, y, self.radius, self.line_force, self.width)
@@ -61,6 +69,10 @@ class Disc(Load):
     pressure: Annotated[
         float, Quantity("Pa"), Field(description="pressure on the disc [Pa], > 0 into the solid")
     ]
+
+    def cells_across(self, dx: float, dy: float) -> float:
+        """Return how many cells lie across the diameter."""
+        return 2 * self.radius / max(dx, dy)
 
     def traction(self, x: Array, y: Array) -> Array:
         """Return the traction [Pa] on each cell, πR² times the pressure in sum."""
@@ -97,6 +109,10 @@ class Droplet(Line):
         if (self.contact_angle is None) == (self.volume is None):
             raise ConfigError("give exactly one of contact_angle and volume", "contact_angle")
         return self
+
+    def cells_across(self, dx: float, dy: float) -> float:
+        """Return how many cells lie across the diameter or the width, whichever is less."""
+        return min(super().cells_across(dx, dy), 2 * self.radius / max(dx, dy))
 
     @property
     def vertical_tension(self) -> float:

@@ -33,6 +33,10 @@ class Sum(Load):
         """Whether any part has one."""
         return any(part.has_line_without_width for part in self.parts)
 
+    def cells_across(self, dx: float, dy: float) -> float:
+        """Return that of the finest part."""
+        return min(part.cells_across(dx, dy) for part in self.parts)
+
     def traction(self, x: Array, y: Array) -> Array:
         """Return the sum of the tractions [Pa]."""
         traction = np.zeros(np.broadcast_shapes(x.shape, y.shape))

@@ -275,6 +275,26 @@ def test_a_load_goes_through_files(tmp_path: Path) -> None:
     assert (table["ridge_height"].values[0] > table["ridge_height"].values[1]).all()
 
 
+@pytest.mark.parametrize(
+    "load",
+    [
+        DROPLET | {"radius": 5e-6, "width": None},
+        DROPLET | {"width": 4e-5},
+        {"type": "ring", "radius": 2e-5, "line_force": -1e-4},
+        {"type": "disc", "radius": 2e-5, "pressure": 10.0},
+        {"type": "sum", "parts": [{"type": "disc", "radius": 2e-5, "pressure": 10.0}]},
+        {"type": "disc", "radius": [2e-5, 2e-4], "pressure": 10.0},
+    ],
+)
+def test_a_load_of_few_cells_is_told(load: dict[str, Any]) -> None:
+    """The surface beside it is not resolved: a drop on one cell leaves none at all."""
+    load = {name: value for name, value in load.items() if value is not None}
+    with pytest.warns(pl.ConvergenceWarning, match="too coarse|finest part of the load"):
+        data = solved(load)
+    codes = data["status_code"].values.tolist()
+    assert codes == ["COARSE_LOAD", "CONVERGED"][: len(codes)]
+
+
 def test_a_narrow_period_and_a_single_cell_have_a_width_or_none() -> None:
     """The width of a ridge does not depend on how long a period is along it."""
     load = {"type": "ridge", "line_force": -0.03}
@@ -291,7 +311,7 @@ def test_a_narrow_period_and_a_single_cell_have_a_width_or_none() -> None:
 
 def test_on_two_bodies_and_on_a_skin_stretched_more_one_way() -> None:
     """Two equal bodies yield twice as much; the energy lies between those of both tensions."""
-    ring = {"type": "ring", "radius": RADIUS, "line_force": 1e-3, "width": 6e-5}
+    ring = {"type": "ring", "radius": RADIUS, "line_force": 1e-3, "width": 7e-5}
     base: dict[str, Any] = {"grid": GRID | {"boundary": "periodic"}, "load": ring}
 
     def solved(kernel: dict[str, Any]) -> Any:

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from pellicle.analysis import ridge, steepest
+from pellicle.components import Load
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.load_step import Value
@@ -19,6 +20,8 @@ from . import SMALL_SLOPE, AnyStep, Surroundings
 _ROUNDING: Final = 1e-12
 # Fall of G(q) q over a decade of short waves from which a line force has a finite height.
 _FALLS: Final = 0.9
+# Cells across the finest part of a load with which the heights beside it are right to 5 %.
+_RESOLVED_ACROSS: Final = 4
 
 
 def surface(run: Run, step: AnyStep, around: Surroundings) -> AnyStep:
@@ -31,12 +34,14 @@ def surface(run: Run, step: AnyStep, around: Surroundings) -> AnyStep:
     pressure = step.equilibrium.pressure
     if abs(float(pressure.sum())) <= _ROUNDING * float(np.abs(pressure).sum()):
         measures |= {"force": 0.0, "mean_pressure": 0.0}
-    if run.load and (path := run.load.varied):
+    assert run.load is not None
+    if path := run.load.varied:
         measures[path.variable.name] = path.values[len(around.path)]
-    return step.having(measures | {"surface_slope": slope}, _limits(run, slope))
+    load = run.load.at(len(around.path))
+    return step.having(measures | {"surface_slope": slope}, _limits(run, load, slope))
 
 
-def _limits(run: Run, slope: float) -> Iterator[Caveat]:
+def _limits(run: Run, load: Load, slope: float) -> Iterator[Caveat]:
     """Yield what is beyond the theory, or depends on the cells.
 
     Under a line force the surface has a finite height if G(q) falls faster than 1/q.
@@ -45,5 +50,8 @@ def _limits(run: Run, slope: float) -> Iterator[Caveat]:
         yield Caveat(Status.STEEP_SURFACE, {"slope": slope, "most": SMALL_SLOPE})
     q = 1e3 * np.pi / min(run.grid.spacing) * np.array([1.0, 10.0])
     a, b = along_axes(run.kernel.symbol, q) * q
-    if run.load and run.load.has_line_without_width and b > _FALLS * a:
+    if load.has_line_without_width and b > _FALLS * a:
         yield Caveat(Status.LINE_OF_CELLS, {"width": run.grid.cell_size})
+    across = load.cells_across(*run.grid.spacing)
+    if across < _RESOLVED_ACROSS:
+        yield Caveat(Status.COARSE_LOAD, {"across": across, "least": _RESOLVED_ACROSS})
