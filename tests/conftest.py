@@ -13,6 +13,7 @@ from collections import defaultdict
 from collections.abc import Callable, Generator, Iterator
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from importlib.metadata import entry_points
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,12 +42,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> Generator[None]:
     """Mark the quick tests, then begin with the longest files of those that are left.
 
     So no process ends with a long file while the other is idle. A test without a stored duration is
-    quick.
+    not quick.
     """
     seconds = durations.stored()
     for item in items:
-        is_long = seconds.get(durations.function_of(item.nodeid), 0.0) > durations.QUICK
-        if not is_long and item.get_closest_marker("slow") is None:
+        is_short = seconds.get(durations.function_of(item.nodeid), inf) <= durations.QUICK
+        if is_short and item.get_closest_marker("slow") is None:
             item.add_marker("quick")
     yield
     of_file: dict[Path, float] = defaultdict(float)

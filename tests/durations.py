@@ -1,4 +1,8 @@
-"""Stored CPU seconds of each test: they say which tests are quick and which file is the longest."""
+"""Stored CPU seconds of each test: they say which tests are quick and which file is the longest.
+
+A row has the seconds of a test that runs alone, so with all of the fixtures that it shares: they
+would else fall on the first that asks for them, which differs between selections.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +12,13 @@ import time
 from collections import defaultdict
 from collections.abc import Generator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 STORED = Path(__file__).with_suffix(".csv")
 QUICK = 0.05
 """Mean CPU seconds of a case up to which a test is quick: with this, three quarters are."""
-_STORED_FROM = 0.005
-"""Mean CPU seconds of a case below which a test is not stored."""
 
 
 def function_of(nodeid: str) -> str:
@@ -34,6 +37,7 @@ class Durations:
 
     def __init__(self) -> None:
         self.before = _cpu_seconds()
+        self.fixtures: dict[str, float] = {}
         self.seconds: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))
 
     def pytest_runtest_logstart(self) -> None:
@@ -41,13 +45,25 @@ class Durations:
         self.before = _cpu_seconds()
 
     @pytest.hookimpl(wrapper=True)
+    def pytest_fixture_setup(self, fixturedef: pytest.FixtureDef[Any]) -> Generator[None, Any, Any]:
+        """Measure a fixture that tests share, and leave it out of the phase that it falls in."""
+        before = _cpu_seconds()
+        value = yield
+        if fixturedef.scope != "function":
+            self.fixtures[fixturedef.argname] = seconds = _cpu_seconds() - before
+            self.before += seconds
+        return value
+
+    @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(
-        self,
+        self, item: pytest.Function
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-        """Note in the report of a phase the CPU seconds since the last phase."""
+        """Note in the report of a phase its CPU seconds, with those of shared fixtures at setup."""
         report = yield
         now = _cpu_seconds()
-        report.cpu_seconds = now - self.before  # type: ignore[attr-defined]
+        shared = item.fixturenames if report.when == "setup" else ()
+        fixtures = sum(self.fixtures.get(name, 0.0) for name in shared)
+        report.cpu_seconds = now - self.before + fixtures  # type: ignore[attr-defined]
         self.before = now
         return report
 
@@ -67,8 +83,7 @@ class Durations:
             rows = csv.writer(file, lineterminator="\n")
             rows.writerow(["test", "seconds"])
             for test, mean in sorted(means.items()):
-                if mean >= _STORED_FROM:
-                    rows.writerow([test, f"{mean:.3f}"])
+                rows.writerow([test, f"{mean:.3f}"])
 
 
 def _cpu_seconds() -> float:

@@ -23,6 +23,7 @@ from bokeh.models.widgets import TextInput
 
 import pellicle as pl
 from pellicle.errors import ConfigError
+from pellicle.units import Quantity
 from pellicle_explore import solving
 from pellicle_explore.controls import changed, configuration_of, controls
 from pellicle_explore.page import Explorer
@@ -133,6 +134,22 @@ def test_the_cut_goes_through_the_deepest_point(start: pl.Run) -> None:
     beneath = np.isfinite(cut["indenter"])
     assert np.all(cut["indenter"][beneath] >= cut["surface"][beneath])
     assert cut["indenter"][beneath].min() == pytest.approx(-2, rel=0.04)
+
+
+def test_curves_are_in_the_units_of_their_axes(start: pl.Run) -> None:
+    """Numbers that are drawn, in the unit beside the axis, are those of the run in SI."""
+    page, (steps, _, cut, line, _) = Page(start), solved(configuration_of(start))
+    page.rest()
+    plots: Any = page.explorer._plots
+    for plot, source, *drawn in (
+        (plots.profile, plots._cut, ("x", cut["x"], "m"), ("surface", -cut["displacement"], "m")),
+        (plots.pressure, plots._line, ("x", line["x"], "m"), ("pressure", line["pressure"], "Pa")),
+        (plots.force, plots._path, ("depth", steps["depth"], "m"), ("force", steps["force"], "N")),
+    ):
+        for axis, (name, values, si) in zip((plot.xaxis[0], plot.yaxis[0]), drawn, strict=True):
+            unit = axis.axis_label.partition("[")[2].removesuffix("]")
+            drawn_in_si = source.data[name] * Quantity(si)(f"1 {unit}")
+            np.testing.assert_allclose(drawn_in_si, values, rtol=1e-9)
 
 
 def test_drawing_leaves_the_warnings_of_the_process_alone(

@@ -19,6 +19,7 @@ from pellicle_fit.effect import Effect, Solid
 from pellicle_fit.explanation import Explanation
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.measurement import Measurement
+from pellicle_fit.report.tables import sines
 from pellicle_fit.sine import Sine
 
 RADIUS, DEPTH, MODULUS = 5e-6, 1e-6, 2e3
@@ -315,6 +316,20 @@ def test_a_fit_tells_tension_from_relaxation_by_sines() -> None:
             assert found.high is not None
             assert found.low < MODULUS * part < found.high
     assert with_sines.values()["sine_1_loss_modulus"] == with_sines.sines[0]["loss_modulus"].value
+
+
+def test_table_is_in_the_units_of_its_heads() -> None:
+    """Stiffness in mN/m, moduli in kPa, and the phase of the loss over the storage in degrees."""
+    time, tip, force, _ = made(POWER)
+    options: dict[str, Any] = {"indenter": BEAD, "time": time, "model": [], "rivals": []}
+    fit = pl.fit(tip, force, frequencies=[*FREQUENCIES], **options)
+    columns = {column.words: column.values for column in sines(fit).columns}
+    for head, name in {"K′ [mN/m]": "storage_stiffness", "E″ [kPa]": "loss_modulus"}.items():
+        unit = {"K": 1e3, "E": 1e-3}[head[0]]
+        told = [float(str(text).partition(" ")[0]) for text in columns[head]]
+        assert told == pytest.approx([unit * sine[name].value for sine in fit.sines], rel=0.01)
+    phases = np.angle(stiffness_of(POWER, 0.0, 1.0), deg=True)
+    assert [float(str(text)) for text in columns["phase [°]"]] == pytest.approx(phases, rel=0.02)
 
 
 def held(law: Any) -> tuple[Any, Any, Any]:

@@ -10,17 +10,17 @@ import pytest
 from matplotlib.figure import Figure
 
 import pellicle as pl
-from pellicle.components import Axis, Chart, Column, Series, Table
+from pellicle.components import Axis, Chart, Column, Fields, Panel, Series, Table
 from pellicle.show import draw, write_charts
 from tests.plugins.outputs.shared import rows
 
 X: Any = np.array([0.0, 1.0, 2.0])
 
 
-def drawn(chart: Chart) -> Any:
-    """Return the axes of a drawn chart."""
+def drawn(shown: Chart | Fields) -> Any:
+    """Return the axes of what is drawn."""
     figure = Figure()
-    draw(figure, chart)
+    draw(figure, shown)
     return figure.axes
 
 
@@ -50,6 +50,21 @@ def test_units_suit_whole_numbers_and_limits() -> None:
     assert Axis("depth", "m").scale([np.full(3, np.nan), 1e-6 * X]).unit == "µm"
     assert Axis("depth", "m", limits=(-3e-6, 1e-9)).scale([X]).unit == "µm"
     assert Axis("depth", "m", limits=(0.0, 2e-9)).scale([X]).unit == "nm"
+
+
+def test_lines_and_maps_are_drawn_in_the_units_of_their_labels() -> None:
+    """Micrometres along both sides, kilopascals in the colours: no factor of 1000 is lost."""
+    (axes,) = drawn(Chart(Axis("x", "m"), [Axis("p", "Pa")], [Series(1e-6 * X, 1e3 * X)]))
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("x [µm]", "p [kPa]")
+    np.testing.assert_allclose(axes.lines[0].get_xydata(), np.stack([X, X], axis=1))
+    panel = Panel((4e-6, 2e-6), 1e3 * np.arange(8.0).reshape(4, 2))
+    axes = drawn(Fields(Axis("p", "Pa"), [panel]))[0]
+    (bar,) = axes.child_axes
+    (image,) = axes.images
+    labels = axes.get_xlabel(), axes.get_ylabel(), bar.get_ylabel()
+    assert labels == ("x [µm]", "y [µm]", "p [kPa]")
+    np.testing.assert_allclose(image.get_extent(), [-2, 2, -1, 1])
+    np.testing.assert_allclose(image.get_array(), np.arange(8.0).reshape(4, 2).T)
 
 
 def test_numbers_are_those_drawn_and_further_columns_go_first(tmp_path: Path) -> None:

@@ -387,19 +387,20 @@ def picture(browser: Chrome, number: int = 0) -> str:
     return text
 
 
-def saved(browser: Chrome, ending: str) -> list[int]:
-    """Return the bytes of the file that a click on the first button saves."""
+def saved(browser: Chrome, ending: str, number: int = 0) -> list[int]:
+    """Return the bytes of the file that a click on the button of a map saves."""
     content: list[int] = browser.execute_async_script(
         """
-        const [ending, done] = arguments, address = URL.createObjectURL;
+        const [ending, number, done] = arguments, address = URL.createObjectURL;
         URL.createObjectURL = (blob) => {
           URL.createObjectURL = address;
           blob.arrayBuffer().then((buffer) => done([...new Uint8Array(buffer)]));
           return "#";
         };
-        document.querySelector(`[data-save=${ending}]`).click();
+        document.querySelectorAll(`[data-save=${ending}]`)[number].click();
         """,
         ending,
+        number,
     )
     return content
 
@@ -479,6 +480,10 @@ def test_browser_shows_a_run(browser: Chrome, ran: tuple[Path, xr.Dataset]) -> N
         np.testing.assert_allclose(
             np.unique(table[f"{axis} [m]"]), expected[axis], rtol=1e-5, atol=1e-12
         )
+    # The page shows gaps in µm.
+    gaps, expected = pd.read_csv(BytesIO(bytes(saved(browser, "csv", 1)))), data["gap"].isel(step=1)
+    values = gaps["gap [m]"].to_numpy().reshape(expected.shape)
+    np.testing.assert_allclose(values, expected, atol=2e-5 * expected.max().item())
     select = browser.find_element(By.CSS_SELECTOR, "select")
     assert select.text.splitlines() == ["1: depth 5 µm", "2: depth 10 µm"]
     before = picture(browser)
