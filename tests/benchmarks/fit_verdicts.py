@@ -24,10 +24,11 @@ import numpy as np
 from tables import print_head, print_row
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_fit.estimation.candidate import Candidate
 from pellicle_fit.selection.recipe import Answer
 from pellicle_fit.selection.verdict import Verdict
-from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array, path
+from tests.physics.frozen.fit_curves import MODULUS, RADIUS, path
 from tests.physics.frozen.fit_curves import Path as Rows
 from tests.physics.frozen.fit_curves import force as force_of
 

@@ -4,13 +4,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from pellicle.arrays import Array
 from pellicle.surface.influence import cell_coefficients
 from pellicle_plugins.kernels.half_spaces import TensedMembrane
 from tests.physics.tables_of_runs import reference_rows
 
-Array = NDArray[np.float64]
 Radial = Callable[[Array], Array]
 
 # s/D, i, j, K E*/D.

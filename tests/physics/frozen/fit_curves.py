@@ -10,11 +10,11 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.special import beta, betainc, ndtri
 
-Array = NDArray[np.float64]
+from pellicle.arrays import Array
+
 RADIUS, MODULUS, TOUCH = 5e-6, 2e3, 1e-6
 """R [m], E* [Pa], and the position of first touch [m]."""
 BEFORE = 0.3

@@ -18,9 +18,9 @@ import cost
 import numpy as np
 import operator_counts
 import xarray as xr
-from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_fit.config import FitConfig
 from pellicle_fit.contact.curve import Curve
 from pellicle_fit.effect import Effect, Sizes, Solid
@@ -35,8 +35,6 @@ from pellicle_fit.selection.recipe import answer, with_estimates
 from tests import adhesive_paths
 from tests.physics.frozen.fit_curves import RADIUS, Case
 from tests.physics.frozen.not_frozen import VARIABLES
-
-Array = NDArray[np.float64]
 
 
 @contextmanager

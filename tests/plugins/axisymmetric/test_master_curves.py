@@ -5,7 +5,6 @@ from __future__ import annotations
 import curve_tables
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle.components import HasForceCurve
@@ -14,7 +13,6 @@ from pellicle_axisymmetric.indentation import indent
 from pellicle_axisymmetric.tensed_punch import punch
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid, Sphere
 
-Array = NDArray[np.float64]
 ACCURACY = 1e-6
 RADIUS = 3e-6
 ANGLE = 1.2

@@ -8,10 +8,10 @@ from typing import Any, Literal
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.integrate import quad
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_axisymmetric import BodyOfRevolution
 from pellicle_axisymmetric.equation import solve
 from pellicle_axisymmetric.master_curves import _Power
@@ -23,7 +23,6 @@ from pellicle_plugins.indenters.of_revolution import (
     Sphere,
 )
 
-Array = NDArray[np.float64]
 Tip = BodyOfRevolution | FlatPunch
 WORN = Sphere(radius=5e-6, flat_radius=1e-6)
 BLUNT = Cone(half_angle=radians(70), tip_radius=20e-9)

@@ -17,14 +17,12 @@ import pellicle as pl
 from pellicle import memory
 from pellicle.components import Say
 from pellicle.components.installed import registry
-from tests.plugins.executors.jobs import Job, silence
+from tests.plugins.executors.jobs import PATIENCE, Job, posix, silence
 
 # Workers cannot import a module of a folder that is no package.
 cloudpickle.register_pickle_by_value(sys.modules[__name__])
 
-posix = pytest.mark.skipif(sys.platform == "win32", reason="has other signals")
 GIGABYTE = 10**9
-PATIENCE = 60.0
 
 
 def processes(**fields: Any) -> pl.Executor:

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_fit.config import DEFAULT_RIVALS
 from pellicle_fit.estimation.candidate import Candidate
 from pellicle_fit.estimation.intervals import End, Estimate, common_value
@@ -22,7 +23,7 @@ from pellicle_fit.selection.forecast import Means, measurements, telling
 from pellicle_fit.selection.forecast import _foretold as foretold
 from pellicle_fit.selection.verdict import Verdict, decision
 from pellicle_plugins.indenters.of_revolution import Cone, FlatPunch, Paraboloid, Sphere
-from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array
+from tests.physics.frozen.fit_curves import MODULUS, RADIUS
 from tests.plugins.fit.conftest import ends_of, holds
 
 TENSION = 0.3 * RADIUS * MODULUS / 2

@@ -12,10 +12,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.io import savemat
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_fit.files.choice import read
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.columns import Calibration
@@ -23,7 +23,6 @@ from pellicle_fit.files.measurement import Measurement
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 
-Array = NDArray[np.float64]
 Z = np.array([1.5, 2.5, 3.5, 4.5])
 """[um]"""
 F = np.array([0.25, 0.5, 1.25, 2.0])

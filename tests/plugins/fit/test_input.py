@@ -9,15 +9,14 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.measurement import Measurement
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.command import Cli
 
-Array = NDArray[np.float64]
 MODULUS, TENSION, RADIUS, POINT = 5e3, 7.5e-3, 10e-6, 1e-6
 OPTIONS = ("--indenter", "paraboloid", "--radius", "10 um")
 

@@ -10,9 +10,9 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_fit.files.choice import read
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.columns import Calibration
@@ -25,7 +25,6 @@ from tests.plugins.fit.conftest import holds
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 
-Array = NDArray[np.float64]
 MODULUS, LENGTH, RADIUS, SPRING, SENSITIVITY = 5e3, 3e-6, 10e-6, 0.05, 50e-9
 GIVEN = Calibration(spring_constant=SPRING, sensitivity=SENSITIVITY)
 BEAD = Paraboloid(radius=RADIUS)

@@ -11,16 +11,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_fit.files.choice import read
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.measurement import Measurement, Segment
 from pellicle_fit.files.passes import passes
 from tests.plugins.fit import instruments
 
-Array = NDArray[np.float64]
 SPRING, STEP = 0.05, 1e-8
 """Spring constant [N/m] of a cantilever, and how far its base moves from row to row [m]."""
 ORDERS = "forwards", "backwards", "retract first"

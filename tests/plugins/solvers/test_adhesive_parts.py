@@ -6,15 +6,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.special import i0, k0
 
 from pellicle import Grid
+from pellicle.arrays import Array
 from pellicle_plugins.solvers import front
 from pellicle_plugins.solvers.anderson import Tried, extrapolated, is_convex
 from pellicle_plugins.solvers.front import STIFFNESS, potential, shifted_contact
 
-Array = NDArray[np.float64]
 WORK, LONGEST, FORCE = 0.05, 0.05, 2.0
 
 

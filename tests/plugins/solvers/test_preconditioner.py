@@ -7,12 +7,12 @@ import pytest
 from numpy.typing import NDArray
 
 from pellicle import Problem
+from pellicle.arrays import Array
 from pellicle_plugins.kernels.skins import BendingSkin
 from pellicle_plugins.solvers.contact_cg import _Directions
 from pellicle_plugins.solvers.preconditioner import Preconditioner
 from tests.plugins.solvers.problems import BOUNDARIES, Boundary, make, skin
 
-Array = NDArray[np.float64]
 SHAPE = (20, 24)
 KERNELS = {
     "half-space": skin(0.0),
