@@ -1,4 +1,4 @@
-"""Results: what they know, and saving and loading them."""
+"""Results: their variables, what they know, and saving and loading them."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from pellicle.components.installed import registry
 from pellicle.plugins.origins import Origin
 from pellicle.results import storage
 from tests.command import call
+from tests.small_run import RUN
 
 CONFIGURATION: dict[str, Any] = {
     "title": "τ₀",
@@ -164,3 +165,45 @@ def test_study_beyond_the_theory(tmp_path: Path) -> None:
         assert message.endswith(f"step 2: {texts[3]}")
     shown = call("show", tmp_path)
     assert message in shown.stderr
+
+
+@pytest.fixture(scope="module")
+def dataset() -> xr.Dataset:
+    """Return the dataset of three steps on a rectangle."""
+    run = pl.Run(**RUN | {"grid": {"points": [20, 16], "size": ["0.4 mm", "0.3 mm"]}})
+    return pl.run(run, progress=False).dataset
+
+
+def test_every_variable_is_described(dataset: xr.Dataset) -> None:
+    """Each variable and coordinate says what it is."""
+    assert all(variable.attrs["long_name"] for variable in dataset.variables.values())
+
+
+def test_coordinates_are_cell_centres(dataset: xr.Dataset) -> None:
+    """Coordinates are the centres of the cells in metres."""
+    x, y = pl.Grid(points=[20, 16], size=["0.4 mm", "0.3 mm"]).coordinates()
+    assert np.array_equal(dataset["x"], x.ravel())
+    assert np.array_equal(dataset["y"], y.ravel())
+    assert dataset["x"].attrs["units"] == dataset["y"].attrs["units"] == "m"
+
+
+def test_types(dataset: xr.Dataset) -> None:
+    """Contact and converged are flags, counts are whole, status is text."""
+    assert dataset["contact"].dtype == bool
+    assert dataset["converged"].dtype == bool
+    assert dataset["iterations"].dtype.kind == "i"
+    assert dataset["operator_applications"].dtype.kind == "i"
+    assert list(dataset["status"].values) == ["converged"] * 3
+
+
+def test_numbers_agree_with_fields(dataset: xr.Dataset) -> None:
+    """Force, area, fraction and mean pressure are those of the fields."""
+    cell, domain = 4e-4 / 20 * 3e-4 / 16, 4e-4 * 3e-4
+    contact = dataset["contact"].sum(("x", "y")).values
+    force = dataset["pressure"].sum(("x", "y")).values * cell
+    assert dataset["force"].values == pytest.approx(force, rel=1e-12)
+    assert dataset["mean_pressure"].values == pytest.approx(force / domain, rel=1e-12)
+    assert dataset["contact_area"].values == pytest.approx(contact * cell, rel=1e-12)
+    assert dataset["contact_fraction"].values == pytest.approx(contact * cell / domain, rel=1e-12)
+    assert np.array_equal(dataset["contact"], dataset["pressure"] > 0)
+    assert dataset["depth"].values == pytest.approx([5e-6, 10e-6, 15e-6])
