@@ -5,14 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import pellicle as pl
+from tests.tables_of_runs import paraboloid, pressing, tensed
 
-RUN: dict[str, Any] = {
-    "grid": {"points": 20, "size": "0.4 mm"},
-    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"depth": ["5 um", "10 um", "15 um"]},
-    "outputs": [],
-}
+RUN: dict[str, Any] = pressing(
+    20, "0.4 mm", tensed("10 kPa", "1 N/m"), paraboloid("1 mm"), depth=["5 um", "10 um", "15 um"]
+) | {"outputs": []}
 
 
 def run_file(study: str = "", **changes: Any) -> str:

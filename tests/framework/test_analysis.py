@@ -19,18 +19,13 @@ from pellicle.analysis import (
     spectrum,
 )
 from pellicle_plugins.closed_forms import hertz
+from tests.tables_of_runs import self_affine
 
 HALF_SPACE = {"type": "half_space", "reduced_modulus": "10 kPa"}
 ROUGH: dict[str, Any] = {
     "grid": {"points": 48, "size": "1 mm"},
     "kernel": {**HALF_SPACE, "type": "tensed_membrane", "tension": "10 mN/m"},
-    "indenter": {
-        "type": "self_affine",
-        "rms_height": "10 um",
-        "hurst": 0.5,
-        "cutoff_wavelength": "0.15 mm",
-        "seed": 2,
-    },
+    "indenter": self_affine("10 um", 0.5, "0.15 mm", seed=2),
     "loading": {"depth": ["8 um", "15 um"]},
 }
 

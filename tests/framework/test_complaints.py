@@ -10,13 +10,11 @@ import pytest
 import pellicle as pl
 from pellicle_plugins.outputs.csv import Csv
 from tests.command import call
+from tests.tables_of_runs import half_space, paraboloid, pressing
 
-RUN: dict[str, Any] = {
-    "grid": {"points": 16, "size": "0.4 mm"},
-    "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"depth": "20 um"},
-}
+RUN: dict[str, Any] = pressing(
+    16, "0.4 mm", half_space("10 kPa"), paraboloid("1 mm"), depth="20 um"
+)
 
 
 class Raising(pl.Output):

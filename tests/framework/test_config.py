@@ -20,13 +20,9 @@ from pellicle.components.installed import registry
 from pellicle.components.prescription import OPTIONS
 from pellicle.config.loading import Options
 from pellicle.schema import get
+from tests.tables_of_runs import half_space, paraboloid, pressing
 
-BASE: dict[str, Any] = {
-    "grid": {"points": 16, "size": "1 mm"},
-    "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"depth": "10 um"},
-}
+BASE: dict[str, Any] = pressing(16, "1 mm", half_space("10 kPa"), paraboloid("1 mm"), depth="10 um")
 VARIANTS: list[dict[str, Any]] = [
     {"title": 'quotes " and \\ and\nlines, \x7f, τ₀ and 🎈'},
     {

@@ -1,15 +1,18 @@
-"""Interactions on the way from a run file to a result file."""
+"""Interactions on the way from a run file to a result, and those that make no sense."""
 
 from __future__ import annotations
 
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import pellicle as pl
 from tests.command import call
+from tests.framework.bad_input.conftest import says
+from tests.tables_of_runs import half_space, paraboloid, pressing
 
 FILE = """
 outputs = []
@@ -96,3 +99,97 @@ def test_study_with_steep_slopes(tmp_path: Path, quiet: list[str]) -> None:
     for command in (["run", str(file), "-o", out, *quiet], ["show", out]):
         done = call(*command)
         assert done.output.count("of 2 runs, in 1 slopes in contact are beyond the theory") == 1
+
+
+STICKY = pressing(
+    32, "0.6 mm", half_space("700 kPa"), paraboloid("1 mm"), depth=["5 um", "0 um"]
+) | {
+    "interaction": {"type": "jkr", "work_of_adhesion": "50 mJ/m^2"},
+    "solver": {"type": "active_set", "tolerance": 1e-6},
+}
+PERIODIC = {"points": 32, "size": "0.6 mm", "boundary": "periodic"}
+
+
+@pytest.mark.parametrize("prescribed", ["depth", "force", "mean_pressure", "base_displacement"])
+def test_pulling_takes_an_interaction(prescribed: str) -> None:
+    """A load below 0 is refused without an interaction, which is named, and allowed with one."""
+    loading: dict[str, Any] = {prescribed: [1e-6, -1e-6]}
+    if prescribed == "base_displacement":
+        loading["spring_constant"] = "1 N/m"
+    grid = PERIODIC if prescribed == "mean_pressure" else STICKY["grid"]
+    configuration = STICKY | {"grid": grid, "loading": loading}
+    assert pl.Run(**configuration).indentation.loading.values == (1e-6, -1e-6)
+    del configuration["interaction"]
+    for table in (loading, pl.Loading(**loading)):
+        with pytest.raises(pl.ConfigError) as caught:
+            pl.Run(**configuration | {"loading": table})
+        message = str(caught.value)
+        says(message, f"loading.{prescribed}.1: -1e-06 is not allowed; give a value ≥ 0")
+        says(message, "with an [interaction] it may be negative")
+
+
+def test_pull_that_no_contact_carries() -> None:
+    """The step says how much the contact carries, the next that there is none; both press again."""
+    with pytest.warns(pl.ConvergenceWarning):
+        result = pl.run(
+            STICKY | {"loading": {"force": ["-10 uN", "10 uN", "-500 uN", "-10 uN", "10 uN"]}},
+            progress=False,
+        )
+    data = result.dataset
+    codes = ["NOTHING_TO_PULL", "PULLED_OFF", "NOTHING_TO_PULL"]
+    assert [*data["status_code"].values[[0, 2, 3]]] == codes
+    assert data["converged"].values[[1, 4]].all()
+    says(str(data["status"].values[0]), "no contact", "-10 µN; press before you pull")
+    says(str(data["status"].values[2]), "no contact carries a force of -500 µN", "softer holder")
+    assert not data["contact"].values[[0, 2, 3]].any()
+    np.testing.assert_allclose(data["depth"][4], data["depth"][1], rtol=1e-3)
+
+
+@pytest.mark.parametrize("strength", ["200 kPa", "2 MPa"])
+def test_grid_that_is_too_coarse(strength: str) -> None:
+    """A zone narrower than its law takes is told, also where no cell is in it, and what helps."""
+    law = {"type": "linear", "work_of_adhesion": "50 mJ/m^2", "strength": strength}
+    with pytest.warns(pl.ConvergenceWarning, match="cells wide, where it takes 1.25"):
+        result = pl.run(STICKY | {"interaction": law, "loading": {"depth": "5 um"}}, progress=False)
+    assert result.dataset["status_code"].item() == "COARSE_ZONE"
+    assert float(result.dataset["zone_width"].item()) < 1.25 * 0.6e-3 / 32
+    says(str(result.dataset["status"].item()), "use more points")
+
+
+@pytest.mark.parametrize("work", [1e-30, 1e-12, 1e6, 1e30])
+@pytest.mark.filterwarnings("ignore::pellicle.ConvergenceWarning")
+def test_works_of_all_sizes(work: float) -> None:
+    """A work of adhesion far from any that exists ends in finite numbers and a status in words."""
+    result = pl.run(
+        STICKY | {"interaction": {"type": "jkr", "work_of_adhesion": work}}, progress=False
+    )
+    data = result.dataset
+    assert np.isfinite(data["force"].values).all()
+    if work < 1:
+        # Hertz, 4/3 E* √R δ^(3/2), from which adhesion takes nothing.
+        assert float(data["force"][0]) == pytest.approx(
+            4 / 3 * 7e5 * 1e-3**0.5 * 5e-6**1.5, rel=0.1
+        )
+    else:
+        assert not result.converged or result.coarse() or result.steep()
+
+
+def test_steep_slopes() -> None:
+    """A slope beyond those of the theory is told; the step counts as converged."""
+    with pytest.warns(pl.ConvergenceWarning, match=r"slopes in contact reach 0\.[3-9]"):
+        result = pl.run(
+            STICKY
+            | {
+                "grid": {"points": 96, "size": "0.25 mm", "boundary": "free"},
+                "indenter": {"type": "paraboloid", "radius": "0.2 mm"},
+                "interaction": {
+                    "type": "linear",
+                    "work_of_adhesion": "50 mJ/m^2",
+                    "strength": "60 kPa",
+                },
+                "loading": {"depth": "20 um"},
+            },
+            progress=False,
+        )
+    assert result.converged
+    assert result.dataset["status_code"].item() == "STEEP"

@@ -13,6 +13,7 @@ from jsonschema import Draft202012Validator
 
 import pellicle as pl
 from tests.command import call
+from tests.tables_of_runs import half_space, relaxing
 
 LEGS: list[dict[str, Any]] = [
     {"to": "1 um", "time": "1 s", "num": 4},
@@ -22,11 +23,7 @@ LEGS: list[dict[str, Any]] = [
 RUN: dict[str, Any] = {
     "title": "legs",
     "grid": {"points": 12, "size": "1 mm", "boundary": "free"},
-    "kernel": {
-        "type": "viscoelastic",
-        "solid": {"type": "half_space", "reduced_modulus": "10 kPa"},
-        "relaxation": [{"fraction": 0.8, "time": "2 s"}],
-    },
+    "kernel": relaxing(half_space("10 kPa"), 0.8, "2 s"),
     "indenter": {"type": "flat_punch", "radius": "0.2 mm"},
     "loading": {"depth": LEGS},
     "outputs": [],

@@ -14,7 +14,7 @@ import pellicle as pl
 from pellicle.analysis import Oscillation, oscillations
 from pellicle.variables import names_of
 from tests.command import call
-from tests.physics.tables_of_runs import coated, half_space, heights, relaxing
+from tests.tables_of_runs import coated, half_space, heights, relaxing
 
 K = 3.0 + 0.4j
 AMPLITUDE, FREQUENCY = 2e-6, 5.0

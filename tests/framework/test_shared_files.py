@@ -12,13 +12,9 @@ import pellicle as pl
 from pellicle.components import Output
 from pellicle.components.installed import registry
 from pellicle.config.file_names import refuse_shared_files
+from tests.tables_of_runs import half_space, paraboloid, pressing
 
-RUN: dict[str, Any] = {
-    "grid": {"points": 16, "size": "1 mm"},
-    "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"depth": "10 um"},
-}
+RUN: dict[str, Any] = pressing(16, "1 mm", half_space("10 kPa"), paraboloid("1 mm"), depth="10 um")
 
 
 class Silent(pl.Output):

@@ -18,15 +18,11 @@ from pellicle.config.study import Study
 from pellicle.results.derived import names
 from pellicle.schema import replaced
 from pellicle.studies.table import StudyTable
+from tests.tables_of_runs import paraboloid, pressing, tensed
 
-RUN: dict[str, Any] = {
-    "grid": {"points": 16, "size": "0.4 mm"},
-    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "1 N/m"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"depth": ["5 um", "10 um"]},
-    "solver": {"type": "active_set"},
-    "corrections": [{"type": "yastrebov"}],
-}
+RUN: dict[str, Any] = pressing(
+    16, "0.4 mm", tensed("10 kPa", "1 N/m"), paraboloid("1 mm"), depth=["5 um", "10 um"]
+) | {"solver": {"type": "active_set"}, "corrections": [{"type": "yastrebov"}]}
 TENSION = "kernel.tension"
 
 

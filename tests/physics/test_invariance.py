@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import pellicle as pl
 from pellicle.components import profile_of
-from tests.physics.tables_of_runs import heights, step, steps, tensed
+from tests.tables_of_runs import heights, self_affine, step, steps, tensed
 
 TOLERANCE = 1e-9
 
@@ -106,12 +106,7 @@ def test_a_wide_periodic_cell_comes_near_the_free_boundary() -> None:
 
 
 CELLS, PERIODIC = 20, pl.Grid(points=20, size=1.0, boundary="periodic")
-ROUGH: dict[str, Any] = {
-    "type": "self_affine",
-    "rms_height": 0.005,
-    "hurst": 0.8,
-    "cutoff_wavelength": 0.2,
-}
+ROUGH: dict[str, Any] = self_affine(0.005, 0.8, 0.2)
 
 
 def _moved(body: dict[str, Any], x: float, y: float) -> dict[str, Any]:

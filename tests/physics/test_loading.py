@@ -12,8 +12,8 @@ import xarray as xr
 import pellicle as pl
 from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
-from tests.physics.tables_of_runs import ROUGH as ROUGH_PUNCH
-from tests.physics.tables_of_runs import half_space, paraboloid, steps, tensed
+from tests.tables_of_runs import ROUGH as ROUGH_PUNCH
+from tests.tables_of_runs import half_space, paraboloid, steps, tensed
 
 SKIN, BARE = tensed(1e4, 0.1), half_space(1e4)
 SPRINGS = {"type": "winkler", "foundation": 1e8}

@@ -9,11 +9,12 @@ import pytest
 from scipy.special import beta
 
 import pellicle as pl
-from tests.physics.tables_of_runs import (
+from tests.tables_of_runs import (
     Table,
     coated,
     half_space,
     heights,
+    layer,
     paraboloid,
     relaxing,
     steps,
@@ -79,9 +80,7 @@ def test_creep_under_a_force_converges_at_second_order(solver: str) -> None:
     np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 2.0, atol=0.15)
 
 
-LAYER = {
-    "type": "bonded_layer", "reduced_modulus": MODULUS, "poissons_ratio": 0.3, "thickness": 3e-4
-}  # fmt: skip
+LAYER = layer("bonded_layer", 3e-4, 0.3, reduced_modulus=MODULUS)
 
 
 @pytest.mark.parametrize("tension", [0.0, 2.0])

@@ -11,7 +11,7 @@ import pytest
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.runs.relaxation import Relaxation
-from tests.physics.tables_of_runs import (
+from tests.tables_of_runs import (
     coated,
     half_space,
     paraboloid,

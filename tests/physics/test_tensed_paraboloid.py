@@ -1,4 +1,4 @@
-"""The paraboloid on a tensed half-space against the integral equation: values and orders."""
+"""Tensed half-spaces: the paraboloid against the integral equation, a sine in full contact."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import pytest
 import pellicle as pl
 from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
-from tests.physics.tables_of_runs import paraboloid, reference_rows, tensed
-from tests.physics.tables_of_runs import step as solved
+from tests.tables_of_runs import heights, paraboloid, reference_rows, tensed
+from tests.tables_of_runs import step as solved
 
 CONTACT_RADIUS = 0.1
 
@@ -128,3 +128,30 @@ def test_force_is_second_order_and_area_first(s_over_a: float, solver: str) -> N
     assert order[1] == pytest.approx(1.1, abs=0.2)
     assert order[2] > 1.0
     assert (corrected < 0.85 * area).all()
+
+
+@pytest.mark.parametrize("tension", [0.0, 0.05, 3.0])
+@pytest.mark.parametrize("waves", [(1, 0), (0, 3), (2, 1)])
+def test_the_pressure_amplitude_of_a_sine_is_exact(
+    tension: float, waves: tuple[int, int], solver: str
+) -> None:
+    """In full contact it is (E*/2)(q + s q²)Δ, s = 2τ₀/E*, to 1e-10."""
+    modulus, amplitude, shape = 2.0, 1e-3, (24, 20)
+    size = (1.0, 0.7)
+    grid = pl.Grid(points=shape, size=size, boundary="periodic")
+    x, y = grid.coordinates()
+    qx, qy = (2 * np.pi * m / length for m, length in zip(waves, size, strict=True))
+    wave = np.cos(qx * x + qy * y)
+    q = np.hypot(qx, qy)
+    expected = modulus / 2 * (q + 2 * tension / modulus * q**2) * amplitude
+    step = solved(
+        solver,
+        1e-12,
+        grid=grid,
+        kernel=tensed(modulus, tension),
+        indenter=heights(amplitude * wave),
+        loading={"mean_pressure": 1.5 * expected},
+    )
+    assert float(step["contact_fraction"]) == 1.0
+    assert 2 * np.mean(step["pressure"].values * wave) == pytest.approx(expected, rel=1e-10)
+    assert float(step["mean_pressure"]) == pytest.approx(1.5 * expected, rel=1e-12)

@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 
 from pellicle_plugins.closed_forms.hertz import ellipse, sphere
 from pellicle_plugins.closed_forms.sneddon import cone
-from tests.physics.tables_of_runs import half_space, heights, paraboloid
-from tests.physics.tables_of_runs import step as solved
+from tests.tables_of_runs import half_space, heights, paraboloid
+from tests.tables_of_runs import step as solved
 
 
 def _step(

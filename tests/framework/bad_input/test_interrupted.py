@@ -13,7 +13,7 @@ import pytest
 
 import pellicle as pl
 from tests.command import call
-from tests.framework.bad_input.command_line import says
+from tests.framework.bad_input.conftest import says
 from tests.framework.sentences.bad_files import START
 
 # Where tests run in the background, their processes would ignore Ctrl-C.

@@ -22,6 +22,7 @@ from pellicle_plugins.indenters.of_revolution import (
     Paraboloid,
     Sphere,
 )
+from tests.tables_of_runs import pressing, tensed
 
 Tip = BodyOfRevolution | FlatPunch
 WORN = Sphere(radius=5e-6, flat_radius=1e-6)
@@ -186,12 +187,9 @@ def test_the_grid_solves_the_same(body: Sphere | Paraboloid | Cone) -> None:
     true = float(curve(body, np.array([depth]), length)[0])
     errors = []
     for points in (64, 128, 256):
-        run: dict[str, Any] = {
-            "grid": {"points": points, "size": 9 * edge},
-            "kernel": {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": length / 2},
-            "indenter": body.model_dump(),
-            "loading": {"depth": depth},
-        }
+        run: dict[str, Any] = pressing(
+            points, 9 * edge, tensed(1.0, length / 2), body.model_dump(), depth=depth
+        )
         errors.append(abs(float(pl.run(run).dataset["force"][-1]) / true - 1))
     assert errors[-1] < 5e-3
     assert errors[-1] < errors[0]

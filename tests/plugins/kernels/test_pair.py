@@ -10,14 +10,10 @@ from pellicle.arrays import Array
 from pellicle.components import Branch, KernelOf
 from pellicle.surface import mean_compliance, operator_of
 from pellicle.surface.from_kernel import closed_form_of
+from tests.tables_of_runs import layer, pressing
 
 SKIN: dict[str, Any] = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 0.04}
-LAYER: dict[str, Any] = {
-    "type": "bonded_layer",
-    "youngs_modulus": 5e3,
-    "poissons_ratio": 0.4,
-    "thickness": 1e-4,
-}
+LAYER: dict[str, Any] = layer("bonded_layer", 1e-4, 0.4, youngs_modulus=5e3)
 BALL = {"type": "paraboloid", "radius": 1e-3}
 
 
@@ -120,13 +116,9 @@ def test_two_bodies_that_relax_alike_are_one() -> None:
 def test_derivatives_by_both_bodies() -> None:
     """Two equal bodies share the derivative of one of half."""
     paths = ["kernel.first.tension", "kernel.second.tension"]
-    run = {
-        "grid": {"points": 32, "size": "0.4 mm"},
-        "kernel": {"type": "pair", "first": SKIN, "second": SKIN},
-        "indenter": BALL,
-        "loading": {"depth": ["10 um"]},
-        "gradient": paths,
-    }
+    run = pressing(
+        32, "0.4 mm", {"type": "pair", "first": SKIN, "second": SKIN}, BALL, depth=["10 um"]
+    ) | {"gradient": paths}
     data = pl.run(run, progress=False).dataset
     one = run | {
         "kernel": SKIN | {"reduced_modulus": 5e3, "tension": 0.02},

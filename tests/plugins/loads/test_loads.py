@@ -16,6 +16,7 @@ from pellicle.components.calls import traction_of
 from pellicle_plugins.loads.round import Disc, Droplet, Ring
 from pellicle_plugins.loads.shares import within_circle
 from pellicle_plugins.validation import discs
+from tests.tables_of_runs import layer
 
 RADIUS = 0.25e-3
 GRID: dict[str, Any] = {"points": 64, "size": 1e-3}
@@ -26,12 +27,7 @@ SOLIDS: dict[str, dict[str, Any]] = {
     "layer": {
         "type": "coated",
         "tension": 0.1,
-        "substrate": {
-            "type": "bonded_layer",
-            "youngs_modulus": 3e3,
-            "poissons_ratio": 0.45,
-            "thickness": 2e-4,
-        },
+        "substrate": layer("bonded_layer", 2e-4, 0.45, youngs_modulus=3e3),
     },
 }
 DROPLET = {

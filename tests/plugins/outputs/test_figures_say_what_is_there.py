@@ -17,17 +17,11 @@ from pellicle_plugins.outputs.step_figures import profile
 from tests.command import call
 from tests.pictures import pixels
 from tests.plugins.outputs.shared import bead, rows
+from tests.tables_of_runs import self_affine
 
 RUN = bead(
     grid={"points": 16, "size": "1 mm", "boundary": "periodic"},
-    indenter={
-        "type": "self_affine",
-        "rms_height": "1 um",
-        "hurst": 0.8,
-        "cutoff_wavelength": "0.2 mm",
-        "roll_off_wavelength": "0.5 mm",
-        "seed": 3,
-    },
+    indenter=self_affine("1 um", 0.8, "0.2 mm", roll_off_wavelength="0.5 mm", seed=3),
     loading={"mean_pressure": ["40 Pa", "10 kPa"]},
 )
 CONTROL = "a\x00b\x1b[1mc\x07\x9f\ufffe --> d"

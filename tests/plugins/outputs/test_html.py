@@ -23,6 +23,7 @@ import pellicle as pl
 from pellicle.runs import solve as solving
 from pellicle_plugins.outputs.step_figures import cross_section
 from tests.plugins.outputs.shared import bead
+from tests.tables_of_runs import self_affine
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
@@ -201,13 +202,7 @@ def test_the_profile_is_that_of_each_mapped_step(ran: tuple[Path, xr.Dataset]) -
 
 def test_a_rough_contact_has_no_ellipse(tmp_path: Path) -> None:
     """Contact in several parts is told by its fraction of a periodic domain, not by a radius."""
-    rough = {
-        "type": "self_affine",
-        "rms_height": "2 um",
-        "hurst": 0.8,
-        "cutoff_wavelength": "60 um",
-        "roll_off_wavelength": "200 um",
-    }
+    rough = self_affine("2 um", 0.8, "60 um", roll_off_wavelength="200 um")
     grid = {**RUN["grid"], "boundary": "periodic"}
     page = page_of(tmp_path, grid=grid, indenter=rough, loading={"mean_pressure": "5 Pa"})
     (shape,) = page.table("Shape of the contact")

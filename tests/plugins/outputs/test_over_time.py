@@ -18,6 +18,7 @@ from pellicle_plugins.outputs import html_curves
 from pellicle_plugins.outputs.figures import force_depth, over_time, study_curves
 from pellicle_plugins.outputs.step_figures import profile
 from tests.plugins.outputs.shared import bead
+from tests.tables_of_runs import half_space, relaxing
 
 LEGS = [
     {"to": "20 um", "time": "1 s", "num": 4},
@@ -27,11 +28,7 @@ LEGS = [
 RUN = bead(
     title="bead",
     grid={"points": 16, "size": "0.45 mm"},
-    kernel={
-        "type": "viscoelastic",
-        "solid": {"type": "half_space", "reduced_modulus": "10 kPa"},
-        "relaxation": [{"fraction": 0.8, "time": "0.5 s"}],
-    },
+    kernel=relaxing(half_space("10 kPa"), 0.8, "0.5 s"),
     loading={"depth": LEGS},
     outputs=[{"type": "html"}, {"type": "vtk"}],
 )

@@ -11,34 +11,31 @@ import xarray as xr
 import pellicle as pl
 
 Table = dict[str, Any]
-ROUGH: Table = {
-    "type": "self_affine",
-    "rms_height": 1e-5,
-    "hurst": 0.7,
-    "cutoff_wavelength": 1.25e-4,
-    "seed": 5,
-}
-"""A rough punch for domains of 1 mm and cells of 30 µm."""
 
 
 def reference_rows(name: str) -> list[dict[str, float]]:
     """Return the rows of a table of reference values in tests/data."""
-    text = (Path(__file__).parents[1] / "data" / name).read_text(encoding="utf-8")
+    text = (Path(__file__).parent / "data" / name).read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if not line.startswith("#")]
     return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
 
 
-def half_space(modulus: float = 1.0) -> Table:
+def half_space(modulus: Any = 1.0) -> Table:
     """Return a half-space of E* [Pa]."""
     return {"type": "half_space", "reduced_modulus": modulus}
 
 
-def tensed(modulus: float, tension: float) -> Table:
+def tensed(modulus: Any, tension: Any) -> Table:
     """Return a half-space of E* [Pa] under a surface tension [N/m]."""
     return {"type": "tensed_membrane", "reduced_modulus": modulus, "tension": tension}
 
 
-def relaxing(solid: Table, fraction: float, time: float) -> Table:
+def layer(base: str, thickness: Any, poissons_ratio: float, **modulus: Any) -> Table:
+    """Return a layer [m] on a rigid base, bonded to it or not, of which one modulus is given."""
+    return {"type": base, "thickness": thickness, "poissons_ratio": poissons_ratio, **modulus}
+
+
+def relaxing(solid: Table, fraction: float, time: Any) -> Table:
     """Return a solid of which a fraction relaxes within a time [s]."""
     relaxation = [{"fraction": fraction, "time": time}]
     return {"type": "viscoelastic", "solid": solid, "relaxation": relaxation}
@@ -49,14 +46,32 @@ def coated(substrate: Table, tension: float) -> Table:
     return {"type": "coated", "tension": tension, "substrate": substrate} if tension else substrate
 
 
-def paraboloid(radius: float = 1.0) -> Table:
+def paraboloid(radius: Any = 1.0) -> Table:
     """Return a paraboloid of a radius [m]."""
     return {"type": "paraboloid", "radius": radius}
+
+
+def self_affine(rms_height: Any, hurst: float, cutoff_wavelength: Any, **others: Any) -> Table:
+    """Return a self-affine surface; its height and shortest wave are in metres without a unit."""
+    cutoff = {"cutoff_wavelength": cutoff_wavelength}
+    return {"type": "self_affine", "rms_height": rms_height, "hurst": hurst, **cutoff, **others}
+
+
+ROUGH = self_affine(1e-5, 0.7, 1.25e-4, seed=5)
+"""A rough punch for domains of 1 mm and cells of 30 µm."""
 
 
 def heights(values: Any) -> Table:
     """Return an indenter of heights [m]."""
     return {"type": "heights", "values": values, "unit": 1.0}
+
+
+def pressing(
+    points: Any, size: Any, kernel: Any, indenter: Any, *, boundary: str = "free", **loading: Any
+) -> Table:
+    """Return the tables of a run, whose loading is given by its fields."""
+    grid = {"points": points, "size": size, "boundary": boundary}
+    return {"grid": grid, "kernel": kernel, "indenter": indenter, "loading": loading}
 
 
 def steps(
