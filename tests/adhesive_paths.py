@@ -1,7 +1,5 @@
 """Paths of adhesive contact in the units E* = R = w = 1, with their closed theory."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import pi
 from typing import Any

@@ -1,7 +1,5 @@
 """Stored CPU seconds of each test: they say which tests are quick and which file is the longest."""
 
-from __future__ import annotations
-
 import csv
 import os
 import time

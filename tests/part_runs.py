@@ -1,7 +1,5 @@
 """Runs the parts of a command in two processes at a time, which are killed at random."""
 
-from __future__ import annotations
-
 import os
 import random
 import signal

@@ -1,7 +1,5 @@
 """Random small problems of adhesion, judged by a descent with dense matrices."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """A run of three steps that takes a few milliseconds."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pellicle as pl

@@ -1,7 +1,5 @@
 """Tables of runs, and the steps that they have."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 from typing import Any

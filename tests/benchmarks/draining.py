@@ -8,8 +8,6 @@ Abel's transform makes the contact of a body of revolution one equation on 0 < s
 form in Fourier space, so a step takes one small matrix.
 """
 
-from __future__ import annotations
-
 import sys
 import warnings
 from collections.abc import Callable, Sequence

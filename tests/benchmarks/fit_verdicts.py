@@ -6,8 +6,6 @@ Each curve that is not in the file yet is fitted and added to it, so that an int
 on; then a table is printed.  Forces come from closed forms and from bracketing, not from effects.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections import Counter

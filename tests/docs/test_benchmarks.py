@@ -1,7 +1,5 @@
 """The scripts that print tables of the documentation run, on little, and so does its notebook."""
 
-from __future__ import annotations
-
 import json
 import re
 import runpy

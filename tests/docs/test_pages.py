@@ -1,7 +1,5 @@
 """A reader finds: pages are short and linked, nothing stands twice, all that is public is told."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections import defaultdict

@@ -1,7 +1,5 @@
 """The reference tables say what they hold, agree with other sources, and hold the solver."""
 
-from __future__ import annotations
-
 import csv
 import re
 from itertools import islice

@@ -1,7 +1,5 @@
 """Analysis of contact: closed forms of shapes, surfaces and contacts that have one."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Files that others changed, or wrote under a right checksum, are refused in words."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The command line, from a starter file to figures."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Commands of plugins that break, clash or are for others: each costs itself alone."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator
 from functools import partial

@@ -1,7 +1,5 @@
 """What goes wrong at work, or with arguments, is told once and in words."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any, Literal
 

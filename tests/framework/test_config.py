@@ -1,7 +1,5 @@
 """Runs: from TOML, JSON and keywords, and back."""
 
-from __future__ import annotations
-
 import json
 import pickle
 import tomllib

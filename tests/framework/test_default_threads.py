@@ -1,7 +1,5 @@
 """How many threads a run takes if it is not said, and that they change nothing but the time."""
 
-from __future__ import annotations
-
 import os
 import threading
 from pathlib import Path

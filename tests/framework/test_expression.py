@@ -1,7 +1,5 @@
 """Dotted names, arithmetic over them, nothing but that, and the columns of studies it makes."""
 
-from __future__ import annotations
-
 import csv
 import math
 import tomllib

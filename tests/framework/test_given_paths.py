@@ -1,7 +1,5 @@
 """Files to read: a page names them, with a hash to check; texts in other encodings."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import json

@@ -1,7 +1,5 @@
 """The grid: cells, coordinates, wavenumbers, and fields between it and a coarser one."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.fft

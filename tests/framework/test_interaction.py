@@ -1,7 +1,5 @@
 """Interactions on the way from a run file to a result, and those that make no sense."""
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Paths in legs: their samples, what describes them, and what is refused."""
 
-from __future__ import annotations
-
 import json
 import pickle
 from pathlib import Path

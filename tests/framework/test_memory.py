@@ -1,7 +1,5 @@
 """The estimate of memory before a run."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

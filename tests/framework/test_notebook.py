@@ -1,7 +1,5 @@
 """What a notebook shows of runs, studies and results."""
 
-from __future__ import annotations
-
 import re
 from html import unescape
 

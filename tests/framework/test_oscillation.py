@@ -1,7 +1,5 @@
 """The response of an oscillation: closed forms of signals, and of contacts in time."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 from math import isnan, nan, pi
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Parts of a study: one process at a time writes files, the last part the table."""
 
-from __future__ import annotations
-
 import json
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """The progress bar, and Ctrl-C while it is there."""
 
-from __future__ import annotations
-
 import io
 import signal
 import threading

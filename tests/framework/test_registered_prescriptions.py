@@ -1,7 +1,5 @@
 """What a prescription has to be to be registered, and how its runs resume."""
 
-from __future__ import annotations
-
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Annotated, Any, Literal

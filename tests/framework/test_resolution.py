@@ -1,7 +1,5 @@
 """Cells too wide for kernel or contact, surfaces of no period and steep slopes are said to be."""
 
-from __future__ import annotations
-
 import warnings
 from typing import Any
 

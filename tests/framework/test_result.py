@@ -1,7 +1,5 @@
 """Results: their variables and caveats, what they know, and saving and loading them."""
 
-from __future__ import annotations
-
 import csv
 import math
 import re

@@ -1,7 +1,5 @@
 """Outputs that would write the same file are refused before anything is computed."""
 
-from __future__ import annotations
-
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any, ClassVar, Literal

@@ -1,7 +1,5 @@
 """The one HDF5 layout, NetCDF-4 to others, and that a file is whole at every moment."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Studies carried out: the table, what is repeated and what is not, and what goes wrong."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import os

@@ -1,7 +1,5 @@
 """From a study file to its runs: axes, identity, JSON schema, and what is wrong with them."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 from copy import deepcopy

@@ -1,7 +1,5 @@
 """A study whose process or worker is killed in its midst ends as if nothing had happened."""
 
-from __future__ import annotations
-
 import os
 import random
 import signal

@@ -1,7 +1,5 @@
 """The tables of runs, studies and inputs; ``python tests/framework/test_tables.py`` writes two."""
 
-from __future__ import annotations
-
 import io
 import json
 import re

@@ -1,7 +1,5 @@
 """Loops that end when they are done, or when it is plain that they will not be."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, ClassVar, Literal
 

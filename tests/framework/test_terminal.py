@@ -1,7 +1,5 @@
 """What the commands print: words and units, within the terminal, for programs too."""
 
-from __future__ import annotations
-
 import errno
 import io
 import json

@@ -1,7 +1,5 @@
 """Adhesive contact against closed theory, and what must not change about it."""
 
-from __future__ import annotations
-
 from math import pi
 from typing import Any
 

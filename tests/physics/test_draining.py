@@ -1,7 +1,5 @@
 """Contacts on a gel that drains: closed forms, limits, steps and domains."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

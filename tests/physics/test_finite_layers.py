@@ -1,7 +1,5 @@
 """Contact on finite layers and on springs, whose limits are known in closed form."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

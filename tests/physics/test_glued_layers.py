@@ -1,7 +1,5 @@
 """Contact on glued layers, on both boundaries, against an integral equation and closed forms."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

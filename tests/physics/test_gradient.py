@@ -1,7 +1,5 @@
 """Derivatives of force and depth against central differences, within one set of contact cells."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from pathlib import Path

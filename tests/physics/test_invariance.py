@@ -1,7 +1,5 @@
 """What must not change when the problem is turned, mirrored, scaled or split."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Loading paths, contact stiffness and prescribed areas, with every solver."""
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any
 

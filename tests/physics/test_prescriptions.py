@@ -1,7 +1,5 @@
 """A cantilever and a volume of the gap, against closed forms, limits and what a result has."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

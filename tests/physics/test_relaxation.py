@@ -1,7 +1,5 @@
 """Contacts of solids that relax, in time: closed forms, creep, loops and plateaus."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

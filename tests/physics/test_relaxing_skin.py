@@ -1,7 +1,5 @@
 """A tensed skin on a solid that relaxes, on a free boundary, against correspondence and limits."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

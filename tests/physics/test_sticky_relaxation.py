@@ -1,7 +1,5 @@
 """Contacts that stick: on solids that relax, and a rough punch on springs that jump alone."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Tensed half-spaces: the paraboloid against the integral equation, a sine in full contact."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Contact without tension against closed forms."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Calls the command line in a folder with a run file, and how a message reads."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A file that cannot be written is found out early; a load not attained leaves a marked result."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

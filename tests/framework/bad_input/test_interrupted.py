@@ -1,7 +1,5 @@
 """A run that is interrupted leaves every finished step."""
 
-from __future__ import annotations
-
 import signal
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Bad values that no single command shows: memory, many at once, scales that lack a unit."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

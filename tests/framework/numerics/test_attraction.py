@@ -1,7 +1,5 @@
 """Tractions that are averaged over the cells."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

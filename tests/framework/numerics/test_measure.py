@@ -1,7 +1,5 @@
 """What a pressure achieves, on springs, known in closed form; dilation of sets of cells."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Steps in time of a solid that relaxes, of one wave and between a few, against closed forms."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

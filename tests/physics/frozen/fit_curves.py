@@ -4,8 +4,6 @@ The random numbers are the bits of a generator whose stream is fixed, so that ev
 makes the same curves.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 

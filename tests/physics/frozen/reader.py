@@ -5,8 +5,6 @@ are in SI, by name; effects that bend a force curve have names of their own, and
 sets of them.
 """
 
-from __future__ import annotations
-
 import tempfile
 import warnings
 from collections.abc import Collection, Iterator, Mapping

@@ -1,7 +1,5 @@
 """The freeze lets rounding pass and nothing more, and `same_as.py` tells every bit."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from functools import partial

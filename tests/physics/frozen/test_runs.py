@@ -1,7 +1,5 @@
 """Runs have the values that they had, to 100 times their tolerance, and solves the applications."""
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Force curves on a bonded layer against independent solutions, limits and the FFT solver."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import curve_tables

@@ -1,7 +1,5 @@
 """The interpolated force curves against the axisymmetric equation."""
 
-from __future__ import annotations
-
 import curve_tables
 import numpy as np
 import pytest

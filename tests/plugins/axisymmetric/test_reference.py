@@ -1,7 +1,5 @@
 """The semi-analytic solution of a run is the contact prescribed; radii of cells by stiffness."""
 
-from __future__ import annotations
-
 from math import inf, pi
 from typing import Any, ClassVar, Literal
 

@@ -1,7 +1,5 @@
 """Bodies of revolution with an edge, and others, from the pressures of flat punches."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import pi, radians, tan
 from typing import Any, Literal

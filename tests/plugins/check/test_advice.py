@@ -1,7 +1,5 @@
 """Checks: errors that a grid is to have, and cases of known solution that cannot be compared."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """How the executor dask finds its scheduler: a file, TLS, or jobs of a batch system."""
 
-from __future__ import annotations
-
 import gc
 import json
 import re

@@ -1,7 +1,5 @@
 """Workers of a dask scheduler: large and small ones, late ones, those that are killed or end."""
 
-from __future__ import annotations
-
 import os
 import signal
 import sys

@@ -3,8 +3,6 @@
 Each writer takes a `Recording`, what a microscope sees of an approach and a retract.
 """
 
-from __future__ import annotations
-
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """What fits answer about curves of known solids: values, intervals, verdicts, flaws."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any, cast
 

@@ -1,7 +1,5 @@
 """Files as laboratories have them: columns of other names, odd headers, MATLAB, nested HDF5."""
 
-from __future__ import annotations
-
 import re
 import sys
 from collections.abc import Callable

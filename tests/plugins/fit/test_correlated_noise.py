@@ -1,7 +1,5 @@
 """Noise whose power falls as f^(−2d), and curves that begin in contact, without a baseline."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Configurations of fits: a TOML file, keyword arguments and options make the same object."""
 
-from __future__ import annotations
-
 import json
 import pickle
 from pathlib import Path

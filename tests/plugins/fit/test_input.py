@@ -1,7 +1,5 @@
 """Curves from files, the command, and what is said of input that cannot be fitted or is hostile."""
 
-from __future__ import annotations
-
 import json
 import os
 import zipfile

@@ -1,7 +1,5 @@
 """Curves in the formats of instruments, and tables of what a cantilever sees."""
 
-from __future__ import annotations
-
 import sys
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Folders and files of many curves: one row each, whatever becomes of the others."""
 
-from __future__ import annotations
-
 import json
 import pickle
 from collections.abc import Callable, Collection, Iterator, Sequence

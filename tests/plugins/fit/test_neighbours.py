@@ -1,7 +1,5 @@
 """In a folder, curves spare each other comparisons, and parts are fitted under locks, all alike."""
 
-from __future__ import annotations
-
 import json
 from itertools import pairwise
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A constant of the detector changes the fitted offset, and nothing else."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The passes of a curve are told by where the motion turns, or by segments that a file states."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import chain

@@ -1,7 +1,5 @@
 """One modulus and one tension of several curves."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

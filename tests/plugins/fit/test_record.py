@@ -1,7 +1,5 @@
 """The record of a fit: what went in, bytes that are equal however it is started, the fit again."""
 
-from __future__ import annotations
-
 import csv
 import hashlib
 import json

@@ -1,7 +1,5 @@
 """What fits show: pages, figures, sentences and what a notebook displays."""
 
-from __future__ import annotations
-
 import csv
 import json
 import re

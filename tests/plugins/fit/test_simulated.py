@@ -1,7 +1,5 @@
 """Force curves without a master curve: planned, simulated, kept; those that lie are refused."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal

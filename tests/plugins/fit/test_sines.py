@@ -1,7 +1,5 @@
 """Sines of a hold: K′ and K″ of made curves, moduli under a tension, and of the kernel."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from typing import Any

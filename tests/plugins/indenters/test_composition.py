@@ -1,7 +1,5 @@
 """Indenters made of others."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 from math import pi

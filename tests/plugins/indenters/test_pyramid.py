@@ -1,7 +1,5 @@
 """Pyramids: their profiles, published forces and symmetries."""
 
-from __future__ import annotations
-
 from math import atan, cos, pi
 from typing import Any
 

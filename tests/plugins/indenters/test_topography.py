@@ -4,8 +4,6 @@
 39 × 33 points on 1.3 mm × 1.1 mm; the second lacks 7 points. tests/data/patch.py makes them.
 """
 
-from __future__ import annotations
-
 import io
 import pickle
 import runpy

@@ -1,7 +1,5 @@
 """Layers: their compliance against decimal arithmetic and published values, and their table."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Sequence
 from pathlib import Path

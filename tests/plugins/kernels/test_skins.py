@@ -1,7 +1,5 @@
 """The symbols of skins and springs against direct solutions of elasticity and their limits."""
 
-from __future__ import annotations
-
 import json
 import pickle
 from typing import Any

@@ -1,7 +1,5 @@
 """Loads: sums that are exact, the surface against integrals, invariances, and what is refused."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The run whose outputs are looked at, and the tables that they leave."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 from typing import Any

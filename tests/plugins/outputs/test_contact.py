@@ -1,7 +1,5 @@
 """What outputs that look at contact leave behind; pressures along a line end at its rim."""
 
-from __future__ import annotations
-
 import base64
 import struct
 import zlib

@@ -1,7 +1,5 @@
 """What the outputs that draw studies show, and what they refuse."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any, Literal

@@ -1,7 +1,5 @@
 """Figures and pages draw what is there: contact in black and white, full contact without a gap."""
 
-from __future__ import annotations
-
 import json
 import re
 import xml.etree.ElementTree as ET

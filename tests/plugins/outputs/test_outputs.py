@@ -1,7 +1,5 @@
 """The files of each output, and what that of the adhesive curve leaves behind."""
 
-from __future__ import annotations
-
 import json
 import re
 from math import isnan, pi

@@ -1,7 +1,5 @@
 """Outputs of runs whose steps have times: curves over time, loops, the page, ParaView's time."""
 
-from __future__ import annotations
-
 import re
 import xml.etree.ElementTree as Xml
 from pathlib import Path

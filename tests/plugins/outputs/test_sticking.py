@@ -1,7 +1,5 @@
 """Figures, tables and pages of contacts that stick, along paths with negative depths."""
 
-from __future__ import annotations
-
 import base64
 import json
 import re

@@ -1,7 +1,5 @@
 """Figures fit to print: axes, numbers, size, text, colours, legends and files."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

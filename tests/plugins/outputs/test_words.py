@@ -1,7 +1,5 @@
 """Figures and pages speak in words and engineering units; a page begins with a sentence."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

@@ -1,7 +1,5 @@
 """Parts of the solver with attraction: fronts, rounds that are taken back or extrapolated."""
 
-from __future__ import annotations
-
 from math import pi
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Extension and preconditioner: transposes, known values, decay, positivity, forces moved."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

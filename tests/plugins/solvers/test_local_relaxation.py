@@ -1,7 +1,5 @@
 """Cells on a skin that bends settle as the least energy has them; few are solved exactly."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

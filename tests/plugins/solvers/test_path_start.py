@@ -1,7 +1,5 @@
 """Load steps that start from the last two: same answers, fewer applications, moved fronts."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from typing import Any

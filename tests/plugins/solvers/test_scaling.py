@@ -1,7 +1,5 @@
 """Units of length and pressure, and the number of threads, change neither answer nor effort."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 
