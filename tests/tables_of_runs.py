@@ -1,4 +1,4 @@
-"""Tables of runs, and the steps that they have."""
+"""Tables of runs, made in one place, and the steps that they have."""
 
 import csv
 from pathlib import Path
@@ -85,3 +85,14 @@ def steps(
 def step(*arguments: Any, **tables: Any) -> xr.Dataset:
     """Return the first of these steps."""
     return steps(*arguments, **tables).isel(step=0)
+
+
+RUN: dict[str, Any] = pressing(
+    20, "0.4 mm", tensed("10 kPa", "1 N/m"), paraboloid("1 mm"), depth=["5 um", "10 um", "15 um"]
+) | {"outputs": []}
+"""A run of three steps that takes a few milliseconds."""
+
+
+def run_file(study: str = "", **changes: Any) -> str:
+    """Return the run, with changes, as the text of a TOML file, with the tables of a study."""
+    return f"{pl.Run(**RUN | changes).to_toml()}\n{study}"

@@ -12,8 +12,7 @@ import xarray as xr
 import pellicle as pl
 from pellicle.results import checksum, storage
 from tests.command import call
-from tests.small_run import RUN
-from tests.tables_of_runs import half_space, relaxing
+from tests.tables_of_runs import RUN, half_space, relaxing
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,7 @@ from pellicle import ConfigError
 from pellicle.schema.expression import evaluate, names_in
 from pellicle.schema.model import get, walk
 from tests.command import call
-from tests.small_run import run_file
+from tests.tables_of_runs import run_file
 
 NAMES = {"kernel.tension": 0.5, "kernel.reduced_modulus": 1e4, "depth": 3.0, "grid.size.0": 2.0}
 

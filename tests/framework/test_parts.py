@@ -18,9 +18,8 @@ import pellicle as pl
 from pellicle.batch import Part
 from pellicle.runs.lock import locked
 from pellicle.studies.runner import planned
-from tests.command import call
-from tests.part_runs import run_parts
-from tests.small_run import run_file
+from tests.command import call, run_parts
+from tests.tables_of_runs import run_file
 
 STUDY = run_file("""
 [study.vary]

@@ -12,9 +12,9 @@ from rich.console import Console
 
 import pellicle as pl
 from pellicle.runs.progress import BatchProgress, ProgressMessage, RunProgress
-from tests import small_run
+from tests import tables_of_runs
 
-RUN = pl.Run(**small_run.RUN | {"title": "bead"})
+RUN = pl.Run(**tables_of_runs.RUN | {"title": "bead"})
 
 
 @dataclass(frozen=True)

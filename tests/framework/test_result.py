@@ -28,8 +28,7 @@ from pellicle.contact.caveats import (
 from pellicle.plugins.origins import Origin
 from pellicle.results import storage
 from tests.command import call
-from tests.small_run import RUN
-from tests.tables_of_runs import paraboloid, pressing, tensed
+from tests.tables_of_runs import RUN, paraboloid, pressing, tensed
 
 CONFIGURATION: dict[str, Any] = pressing(
     [16, 12], "0.4472 mm", tensed("10 kPa", "10 mN/m"), paraboloid("1 mm"), depth=["10 um", "20 um"]

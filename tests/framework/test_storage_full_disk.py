@@ -16,7 +16,7 @@ if sys.platform == "win32":
 
 import resource
 
-from tests.small_run import RUN
+from tests.tables_of_runs import RUN
 
 
 @contextmanager

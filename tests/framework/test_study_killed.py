@@ -18,7 +18,7 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle.results import storage
-from tests.small_run import run_file
+from tests.tables_of_runs import run_file
 
 STUDY = """
 [study]

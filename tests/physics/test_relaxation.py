@@ -154,21 +154,30 @@ def test_power_law_pressed_in_and_drawn_back(exponent: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("fraction", "time", "share"), [(1e-12, 1.0, 1.0), (0.8, 1e12, 1.0), (0.8, 1e-12, 0.2)]
+    ("fraction", "time", "unit", "share"),
+    [(1e-12, 1.0, 1.0, 1.0), (0.8, 1e12, 1.0, 1.0), (0.8, 1.0, 1e-12, 1.0), (0.8, 1e-12, 1.0, 0.2)],
+    ids=["no fraction", "endless", "no duration", "at once"],
 )
 @pytest.mark.parametrize(
     ("boundary", "tension", "loading"),
     [
         ("free", 0.0, {"depth": [2e-6, 6e-6, 1e-5, 4e-6]}),
+        ("free", 0.05, {"depth": [2e-6, 6e-6, 1e-5, 4e-6]}),
         ("periodic", 0.05, {"force": [2e-6, 8e-6, 5e-6, 3e-6]}),
     ],
-    ids=["bare", "skin"],
+    ids=["bare", "free skin", "skin"],
 )
 @pytest.mark.filterwarnings("ignore:loading. the shortest step:UserWarning")
 def test_limits_are_elastic(
-    boundary: str, tension: float, loading: Table, fraction: float, time: float, share: float
+    boundary: str,
+    tension: float,
+    loading: Table,
+    fraction: float,
+    time: float,
+    unit: float,
+    share: float,
 ) -> None:
-    """No fraction or endless times give the instantaneous solid, times of nought the relaxed one.
+    """No fraction, endless times and no duration give the instantaneous solid, others the relaxed.
 
     The first step is a jump, so it is instantaneous in any case.
     """
@@ -180,7 +189,7 @@ def test_limits_are_elastic(
             loading=loading | times,
         )
         for solid, times in (
-            (relaxing(ELASTIC, fraction, time), {"time": [0.0, 1.0, 1.5, 7.0]}),
+            (relaxing(ELASTIC, fraction, time), {"time": [t * unit for t in (0.0, 1.0, 1.5, 7.0)]}),
             (half_space(share * MODULUS), {}),
         )
     )

@@ -12,10 +12,8 @@ from pellicle.runs.relaxation import Relaxation
 from tests.tables_of_runs import (
     coated,
     half_space,
-    paraboloid,
     reference_rows,
     relaxing,
-    tensed,
 )
 
 MODULUS, TENSION = 5.0, 0.5
@@ -112,39 +110,6 @@ def test_applications_count_those_that_bring_the_history_forward(
     assert more[0] == 0
     assert 0 < more[1] < 10
     np.testing.assert_array_equal(more[1:], more[1])
-
-
-DEPTHS = np.array([0.1, 0.14, 0.18, 0.08])
-
-
-@pytest.mark.parametrize(
-    ("fraction", "time", "times", "share"),
-    [
-        (1e-12, 1.0, [0.0, 1.0, 1.5, 7.0], 1.0),
-        (0.8, 1e12, [0.0, 1.0, 1.5, 7.0], 1.0),
-        (0.8, 1.0, [0.0, 1e-12, 2e-12, 3e-12], 1.0),
-        (0.8, 1e-12, [0.0, 1.0, 1.5, 7.0], 0.2),
-    ],
-    ids=["no fraction", "endless", "no duration", "at once"],
-)
-@pytest.mark.filterwarnings("ignore:loading. the shortest step:UserWarning")
-def test_limits_are_elastic(fraction: float, time: float, times: list[float], share: float) -> None:
-    """The instantaneous or the relaxed solid under the skin, to 1e-8, in and out."""
-    relaxing, elastic = (
-        solved(
-            40,
-            np.array(times),
-            DEPTHS,
-            size=20.0,
-            indenter=paraboloid(20.0),
-            tolerance=1e-11,
-            substrate=substrate,
-        )
-        for substrate in (kernel(0.1, fraction, time), tensed(share * MODULUS, 0.1))
-    )
-    after = slice(1, None) if share < 1 else slice(None)
-    for name in ("force", "contact_area"):
-        np.testing.assert_allclose(relaxing[name][after], elastic[name][after], rtol=1e-8)
 
 
 def test_a_resumed_run_remembers_all_its_steps(tmp_path: Path) -> None:

@@ -17,8 +17,7 @@ from pellicle_axisymmetric.indentation import indent
 from pellicle_check.advice import advise
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid
 from tests.command import call
-from tests.small_run import RUN
-from tests.tables_of_runs import self_affine
+from tests.tables_of_runs import RUN, self_affine
 
 MODULUS, DEPTH = 1e4, 2e-6
 SHAPES: dict[str, tuple[dict[str, Any], HasAbelSlope]] = {

@@ -21,8 +21,10 @@ from pellicle_fit.files.sources import gather
 from pellicle_fit.files.tree import read_tree
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.command import Cli
+from tests.plugins.fit.test_many import save
 
 MODULUS, TENSION, RADIUS, POINT = 5e3, 7.5e-3, 10e-6, 1e-6
+pytestmark = pytest.mark.usefixtures("no_rivals")
 OPTIONS = ("--indenter", "paraboloid", "--radius", "10 um")
 
 
@@ -32,12 +34,6 @@ def _curve(points: int = 300) -> tuple[Array, Array]:
     force = MODULUS * paraboloid.force_curve(depth, 2 * TENSION / MODULUS).force
     noise = np.random.default_rng(4).standard_normal(points)
     return depth + POINT, force + 0.005 * force.max() * noise
-
-
-def _write(position: Array, force: Array) -> None:
-    values = np.column_stack([position * 1e6, force * 1e9])
-    header = "position [um],force [nN]"
-    np.savetxt("curve.csv", values, delimiter=",", header=header, comments="", fmt="%.12g")
 
 
 def _holds(estimate: dict[str, Any], truth: float) -> bool:
@@ -55,7 +51,6 @@ def test_rows_at_the_turn_belong_to_the_pass_that_has_them(dwell: int) -> None:
     assert np.array_equal(clean(Measurement(*both), "retract").force, relaxed)
 
 
-@pytest.mark.usefixtures("no_rivals")
 def test_hdf5_and_depth(cli: Cli) -> None:
     """An HDF5 file with units is read; depth holds the contact point at 0."""
     position, force = _curve()
@@ -69,7 +64,6 @@ def test_hdf5_and_depth(cli: Cli) -> None:
     assert _holds(report["tension"], TENSION)
 
 
-@pytest.mark.usefixtures("no_rivals")
 def test_result_of_a_run_is_a_curve(cli: Cli) -> None:
     """The file that ``pellicle run`` leaves can be fitted as it is."""
     run = pl.Run(
@@ -84,12 +78,11 @@ def test_result_of_a_run_is_a_curve(cli: Cli) -> None:
     assert report["tension"]["value"] == pytest.approx(0.1, rel=0.02)
 
 
-@pytest.mark.usefixtures("no_rivals")
 def test_baseline(cli: Cli) -> None:
     """An offset is pointed out; with offset and slope fitted the truth comes back."""
     position, force = _curve()
     drift = 3e-9 + 2e-3 * (position - position[0])
-    _write(position, force + drift)
+    save(Path("curve.csv"), position, force + drift)
     plain = json.loads(cli("curve.csv", *OPTIONS, "--json").stdout)
     assert "--baseline" in plain["next"][0]["do"]
     report = json.loads(cli("curve.csv", *OPTIONS, "--baseline", "slope", "--json").stdout)
@@ -102,12 +95,11 @@ def test_baseline(cli: Cli) -> None:
         assert _holds({**report["parameters"], **report}[name], truth)
 
 
-@pytest.mark.usefixtures("no_rivals")
 def test_wild_rows_are_left_out(cli: Cli) -> None:
     """Rows without a number, and the way back, are left out and counted."""
     position, force = _curve()
     force[::10] = np.nan
-    _write(np.append(position, position[::-1]), np.append(force, force[::-1]))
+    save(Path("curve.csv"), np.append(position, position[::-1]), np.append(force, force[::-1]))
     report = json.loads(cli("curve.csv", *OPTIONS, "--json").stdout)
     assert report["curves"][0]["points"] == pytest.approx(270, abs=2)
     assert any("60 of 600 rows hold no finite number" in message for message in report["messages"])
@@ -115,7 +107,6 @@ def test_wild_rows_are_left_out(cli: Cli) -> None:
     assert _holds(report["tension"], TENSION)
 
 
-@pytest.mark.usefixtures("no_rivals")
 def test_ten_points() -> None:
     """Ten points are fitted, with an interval as wide as an unseen tension makes it."""
     position, force = _curve(10)
@@ -124,7 +115,6 @@ def test_ten_points() -> None:
     assert _holds(vars(fit.if_present["reduced_modulus"]), MODULUS)
 
 
-@pytest.mark.usefixtures("no_rivals")
 @pytest.mark.parametrize("indenter", ["paraboloid", "sphere"])
 def test_wrong_radius_is_noticed(indenter: str) -> None:
     """A radius smaller by a thousand is doubted; the contact of a sphere ends at its equator."""
@@ -162,7 +152,6 @@ def test_bad_curves(words: str, change: Callable[[Array, Array], tuple[Array, Ar
         clean(Measurement(*change(*_curve())))
 
 
-@pytest.mark.usefixtures("no_rivals")
 def test_retract_on_request() -> None:
     """A retract is fitted if asked for, with a caution."""
     position, force = _curve()

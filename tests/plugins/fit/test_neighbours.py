@@ -14,8 +14,7 @@ from pellicle.runs.lock import locked
 from pellicle_fit.alike import kind_of, neighbours, order_of
 from pellicle_fit.selection.neighbour import RULED_OUT, Neighbour
 from pellicle_plugins.indenters.of_revolution import Paraboloid
-from tests.command import Cli
-from tests.part_runs import run_parts
+from tests.command import Cli, run_parts
 from tests.plugins.fit.test_many import OPTIONS, curve, save
 
 COUNT, OTHER = 18, 6
