@@ -10,7 +10,7 @@ import xarray as xr
 import pellicle as pl
 from pellicle_axisymmetric.adhesive_contact import Adhesion
 from pellicle_plugins.indenters.of_revolution import Paraboloid
-from tests.tables_of_runs import self_affine
+from tests.tables_of_runs import heights, self_affine
 
 FORCE = pi
 """πwR."""
@@ -83,11 +83,7 @@ def wavy(
         values,
         size=[1.0, 1 / points],
         boundary="periodic",
-        indenter={
-            "type": "heights",
-            "values": (height * np.cos(2 * pi * x))[:, None].tolist(),
-            "unit": 1.0,
-        },
+        indenter=heights((height * np.cos(2 * pi * x))[:, None]),
         **{"interaction": {"type": "jkr", "work_of_adhesion": work}, **options},
     )
 

@@ -1,5 +1,7 @@
 """Gels that drain under a paraboloid: forces of the kernel, those of the effect, and with noise."""
 
+from __future__ import annotations
+
 from functools import cache
 from typing import Any, NamedTuple
 

@@ -4,9 +4,11 @@ import csv
 from pathlib import Path
 from typing import Any
 
+import pytest
 import xarray as xr
 
 import pellicle as pl
+from pellicle.runs import solve as solving
 
 Table = dict[str, Any]
 
@@ -39,7 +41,7 @@ def relaxing(solid: Table, fraction: float, time: Any) -> Table:
     return {"type": "viscoelastic", "solid": solid, "relaxation": relaxation}
 
 
-def coated(substrate: Table, tension: float) -> Table:
+def coated(substrate: Table, tension: Any) -> Table:
     """Return a kernel under a surface tension [N/m]; the kernel itself without one."""
     return {"type": "coated", "tension": tension, "substrate": substrate} if tension else substrate
 
@@ -85,6 +87,20 @@ def steps(
 def step(*arguments: Any, **tables: Any) -> xr.Dataset:
     """Return the first of these steps."""
     return steps(*arguments, **tables).isel(step=0)
+
+
+def interrupt(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """Let Ctrl-C come in the second step that is solved; return what each is called with."""
+    solve, calls = solving.solve_step, list[Any]()
+
+    def once(*arguments: Any) -> Any:
+        calls.append(arguments)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        return solve(*arguments)
+
+    monkeypatch.setattr(solving, "solve_step", once)
+    return calls
 
 
 RUN: dict[str, Any] = pressing(

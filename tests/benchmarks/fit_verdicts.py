@@ -26,7 +26,7 @@ from pellicle.arrays import Array
 from pellicle_fit.estimation.candidate import Candidate
 from pellicle_fit.selection.recipe import Answer
 from pellicle_fit.selection.verdict import Verdict
-from tests.physics.frozen.fit_curves import MODULUS, RADIUS, path
+from tests.physics.frozen.fit_curves import MODULUS, RADIUS, hertz, path
 from tests.physics.frozen.fit_curves import Path as Rows
 from tests.physics.frozen.fit_curves import force as force_of
 
@@ -70,11 +70,6 @@ def rows_of(protocol: str, deepest: float) -> list[Rows]:
 
 
 # --- Solids ----------------------------------------------------------------------------------
-
-
-def hertz(depth: Array | float) -> Array:
-    """Return the force of Hertz [N]."""
-    return np.asarray(4 / 3 * MODULUS * np.sqrt(RADIUS) * np.maximum(depth, 0.0) ** 1.5)
 
 
 def in_series(

@@ -1,21 +1,27 @@
-"""What holds of everything that is registered, and that each keeps its contract, by the kit."""
+"""What holds of everything that is registered, by the kit, and what our own executors keep more."""
 
 import math
+import sys
+import threading
+import time
+from pathlib import Path
 from typing import Annotated, Any
 
+import cloudpickle
 import jsonschema
 import numpy as np
 import pytest
 from pydantic import create_model
 
 import pellicle as pl
-from pellicle import Run, testing
-from pellicle.components import Component, FromRegistry
+from pellicle import ConfigError, Executor, Run, testing
+from pellicle.components import Component, FromRegistry, Say
 from pellicle.components.installed import FAMILIES, registry
 from pellicle.config.json_schema import model_schema
 from pellicle.plugins.registry import family_of
 from pellicle.runs.runner import solve
 from pellicle.testing.component import kit_of, require_close
+from tests.plugins.executors.jobs import Job, silence
 
 
 @pytest.fixture(scope="module")
@@ -109,3 +115,66 @@ def test_result_has_the_periodic_area() -> None:
     assert cells == cells_across
     assert inside < cells
     assert across == pytest.approx(inside, rel=1e-12)
+
+
+# Workers cannot import a module of a folder that is no package.
+cloudpickle.register_pickle_by_value(sys.modules[__name__])
+
+WAITING = 60
+"""Tasks that take longer, all of them, than it takes to close an executor."""
+PATIENCE = 60.0
+
+
+class FussyError(Exception):
+    """Pickles, and cannot be read back."""
+
+    def __init__(self, first: str, second: str) -> None:
+        super().__init__(first + second)
+
+
+def misbehave(job: Job, say: Say) -> Any:
+    """Do at each of the first four jobs what a bad plugin might; wait for these at the others."""
+    (job.folder / str(job.number)).touch()
+    match job.number:
+        case 0:
+            raise ConfigError("it is odd", "job.number")
+        case 1:
+            raise SystemExit(3)
+        case 2:
+            return threading.Lock()
+        case 3:
+            raise FussyError("two ", "parts")
+    end = time.monotonic() + PATIENCE
+    while not all((job.folder / str(bad)).exists() for bad in range(4)):
+        assert time.monotonic() < end
+        time.sleep(0.01)
+    time.sleep(0.02)
+    return job.number
+
+
+def test_whatever_tasks_do(executor: Executor, tmp_path: Path) -> None:
+    """What is raised comes whole, and what cannot travel is said; closed early, the rest waits."""
+    jobs = [Job(i, tmp_path) for i in range(4 + WAITING)]
+    outcomes: Any = executor.map(misbehave, jobs, silence)
+    values: dict[int, Any] = {}
+    for job, outcome in outcomes:
+        values[job.number] = outcome
+        if values.keys() >= {0, 1, 2, 3}:
+            break
+    outcomes.close()
+    begun = {int(path.name) for path in tmp_path.iterdir()}
+    assert values.keys() >= {0, 1, 2, 3}
+    assert values.keys() <= begun
+    assert len(begun) < len(jobs)
+    assert all(values[number] == number for number in values.keys() - {0, 1, 2, 3})
+    assert isinstance(values[0], ConfigError)
+    assert str(values[0]) == "job.number: it is odd"
+    assert isinstance(values[1], Exception)
+    assert "job 1" in str(values[1])
+    if isinstance(values[2], Exception):
+        assert "job 2" in str(values[2])
+        assert "pickle" in str(values[2])
+    else:
+        assert isinstance(values[2], type(threading.Lock()))
+    assert isinstance(values[3], Exception)
+    assert "two parts" in str(values[3])

@@ -47,17 +47,13 @@ def lines(progress: BatchProgress, width: int = 200) -> list[str]:
     return capture.get().splitlines()
 
 
-def _iterate(progress: RunProgress) -> None:
-    with progress:
+def test_bar_on_a_terminal(screen: io.StringIO) -> None:
+    """It shows step, iteration, residual and time left, and goes when the run ends."""
+    with RunProgress(2, True) as progress:
         for index in range(2):
             monitor = progress(index)
             for iteration, excess in enumerate([1e6, 1e3, 0.5]):
                 monitor(iteration, excess)
-
-
-def test_bar_on_a_terminal(screen: io.StringIO) -> None:
-    """It shows step, iteration, residual and time left, and goes when the run ends."""
-    _iterate(RunProgress(2, True))
     shown = screen.getvalue()
     for words in ("step 2/2", "iteration 2", "residual 5.0e-01 × tolerance", "left"):
         assert words in shown

@@ -9,7 +9,6 @@ import pytest
 import pellicle as pl
 from pellicle import Grid
 from pellicle.analysis import steepest
-from pellicle.arrays import Array
 from pellicle.runs.compose import warn_of_period
 from pellicle.surface import operator_of
 from pellicle.surface.influence import error_of_cells, warn_of_cells
@@ -150,16 +149,11 @@ GRID = Grid(points=(40, 60), size=(2.0, 2.4))
 AT_X, AT_Y = np.broadcast_arrays(*(axis - axis.mean() for axis in GRID.coordinates()))
 
 
-def _roof(angle: float) -> Array:
-    """Return heights [m] that fall to both sides of a ridge with a slope of 0.35."""
-    heights: Array = -0.35 * np.abs(np.cos(angle) * AT_X + np.sin(angle) * AT_Y)
-    return heights
-
-
 @pytest.mark.parametrize("angle", np.deg2rad([0.0, 20.0, 45.0, 70.0, 90.0]))
 def test_slope_of_a_roof_at_any_angle(angle: float) -> None:
     """A plane slopes by the same in any direction, on cells that are not square, too."""
-    assert steepest(_roof(angle), AT_X < 9, GRID) == pytest.approx(0.35, rel=1e-9)
+    roof = -0.35 * np.abs(np.cos(angle) * AT_X + np.sin(angle) * AT_Y)
+    assert steepest(roof, AT_X < 9, GRID) == pytest.approx(0.35, rel=1e-9)
 
 
 def test_slope_of_a_paraboloid_is_that_at_its_rim() -> None:
@@ -187,13 +181,8 @@ def test_a_turned_pyramid_is_as_steep(degrees: float) -> None:
     pyramid = -0.35 * np.maximum(np.abs(one), np.abs(other))
     with pytest.warns(pl.ConvergenceWarning, match=r"slopes in contact reach 0\.35"):
         result = pl.run(
-            {
-                "grid": {"points": 32, "size": 2.0, "boundary": "free"},
-                "kernel": {"type": "half_space", "reduced_modulus": 1.0},
-                "indenter": {"type": "heights", "values": pyramid.tolist(), "unit": 1.0},
-                "interaction": {"type": "jkr", "work_of_adhesion": 1e-3},
-                "loading": {"depth": 0.15},
-            },
+            pressing(32, 2.0, half_space(), heights(pyramid), depth=0.15)
+            | {"interaction": {"type": "jkr", "work_of_adhesion": 1e-3}},
             progress=False,
         )
     assert [step for step, _ in result.steep()] == [1]
@@ -226,15 +215,8 @@ COARSE = "too coarse for this contact"
 
 def pressed(points: Any = POINTS, indenter: Any = None, **loading: Any) -> pl.Result:
     """Return a paraboloid, or another indenter, on a half-space."""
-    return pl.run(
-        {
-            "grid": {"points": points, "size": SIZE},
-            "kernel": half_space(MODULUS),
-            "indenter": indenter or paraboloid(RADIUS),
-            "loading": loading,
-        },
-        progress=False,
-    )
+    run = pressing(points, SIZE, half_space(MODULUS), indenter or paraboloid(RADIUS), **loading)
+    return pl.run(run, progress=False)
 
 
 def hertz(depths: Any) -> Any:
@@ -307,14 +289,11 @@ def test_each_edge_of_a_free_domain_is_one(x: float, y: float) -> None:
 
 def test_a_zone_that_reaches_the_edge_has_words_of_its_own() -> None:
     """Without contact it is the zone that needs room; with room the same is said of neither."""
-    run: dict[str, Any] = {
-        "kernel": {"type": "half_space", "reduced_modulus": 1.0},
-        "indenter": {"type": "paraboloid", "radius": 10.0},
-        "interaction": {"type": "dugdale", "work_of_adhesion": 1e-4, "range": 1.0},
-        "loading": {"depth": -0.5},
+    run = pressing(10, 1.0, half_space(), paraboloid(10.0), depth=-0.5) | {
+        "interaction": {"type": "dugdale", "work_of_adhesion": 1e-4, "range": 1.0}
     }
     for boundary in ("free", "periodic"):
-        grid = {"points": 10, "size": 1.0, "boundary": boundary}
+        grid = {**run["grid"], "boundary": boundary}
         with pytest.warns(pl.ConvergenceWarning, match="the zone in which the interaction pulls"):
             data = pl.run({**run, "grid": grid}, progress=False).dataset
         assert data["status_code"].item() == "ZONE_AT_EDGE"

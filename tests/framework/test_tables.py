@@ -18,25 +18,18 @@ from pellicle.results.dimensions import with_paths
 from pellicle.show import tables
 from pellicle.show.numbers import text_of
 from pellicle.units import readable
-from tests.tables_of_runs import half_space, layer, relaxing
+from tests.tables_of_runs import coated, half_space, layer, paraboloid, pressing, relaxing, tensed
 
 FILE = Path(__file__).with_suffix(".txt")
-RUN: dict[str, Any] = {
+DEPTHS: dict[str, Any] = {"depth": ["10 um", "20 um"], "stiffness": True}
+RUN = pressing(16, "0.4 mm", tensed("10 kPa", "30 mN/m"), paraboloid("1 mm"), **DEPTHS) | {
     "title": "not an input",
-    "grid": {"points": 16, "size": "0.4 mm"},
-    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "30 mN/m"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"depth": ["10 um", "20 um"], "stiffness": True},
     "corrections": [{"type": "yastrebov"}],
     "outputs": [],
 }
-STICKING = RUN | {
-    "grid": {"points": 24, "size": "20 um"},
-    "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
-    "indenter": {"type": "paraboloid", "radius": "20 um"},
-    "interaction": {"type": "linear", "work_of_adhesion": "0.5 mJ/m^2", "range": "0.3 um"},
-    "loading": {"depth": {"start": "-0.5 um", "stop": "0.2 um", "num": 3, "back": True}},
-}
+BACK = {"start": "-0.5 um", "stop": "0.2 um", "num": 3, "back": True}
+STICKING = RUN | pressing(24, "20 um", half_space("10 kPa"), paraboloid("20 um"), depth=BACK)
+STICKING["interaction"] = {"type": "linear", "work_of_adhesion": "0.5 mJ/m^2", "range": "0.3 um"}
 OSCILLATING = RUN | {
     "kernel": relaxing(half_space("10 kPa"), 0.5, "1 s"),
     "loading": {
@@ -118,11 +111,7 @@ if __name__ == "__main__":
 CONFIGURATION: dict[str, Any] = {
     "title": "µ",
     "grid": {"points": [16, 12], "size": ["0.4 mm", "0.3 mm"]},
-    "kernel": {
-        "type": "coated",
-        "tension": "0.2 N/m",
-        "substrate": layer("frictionless_layer", "0.1 mm", 0.3, youngs_modulus=1e4),
-    },
+    "kernel": coated(layer("frictionless_layer", "0.1 mm", 0.3, youngs_modulus=1e4), "0.2 N/m"),
     "indenter": {"type": "cone", "half_angle": "70 degree"},
     "loading": {"depth": {"start": "1 um", "stop": "20 um", "num": 20}},
     "corrections": [{"type": "yastrebov"}],

@@ -17,7 +17,7 @@ from pellicle.components.calls import solution_of
 from pellicle.contact.equilibrium import equilibrium_of
 from pellicle.runs.compose import compose
 from pellicle.schema.model import get, replaced
-from tests.tables_of_runs import half_space, layer, relaxing
+from tests.tables_of_runs import half_space, layer, pressing, relaxing
 
 KERNELS: dict[str, dict[str, Any]] = {
     "half-space": {"type": "half_space", "reduced_modulus": 1e4},
@@ -67,14 +67,8 @@ def configuration(
     kernel: Any, boundary: str, indenter: Any, loading: Any, **more: Any
 ) -> dict[str, Any]:
     """Return a run on few cells, solved nearly to rounding."""
-    return {
-        "grid": {"points": [24, 20], "size": [4e-4, 3.6e-4], "boundary": boundary},
-        "kernel": kernel,
-        "indenter": indenter,
-        "loading": loading,
-        "solver": {"type": "active_set", "tolerance": 1e-12},
-        **more,
-    }
+    tables = pressing([24, 20], [4e-4, 3.6e-4], kernel, indenter, boundary=boundary, **loading)
+    return {**tables, "solver": {"type": "active_set", "tolerance": 1e-12}, **more}
 
 
 def solved(run: dict[str, Any]) -> Any:

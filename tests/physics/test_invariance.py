@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import pellicle as pl
 from pellicle.components import profile_of
-from tests.tables_of_runs import heights, self_affine, step, steps, tensed
+from tests.tables_of_runs import heights, pressing, self_affine, step, steps, tensed
 
 TOLERANCE = 1e-9
 
@@ -27,13 +27,9 @@ def _quadric(
     modulus: float = 1.0,
 ) -> dict[str, Any]:
     """Return the run of a quadric, with lengths and moduli in given units."""
-    radii = {"radius_x": radius_x * length, "radius_y": radius_y * length}
-    return {
-        "grid": {"points": 48, "size": 0.4 * length, "boundary": boundary},
-        "kernel": tensed(modulus, 0.02 * modulus * length),
-        "indenter": {"type": "quadric", **radii},
-        "loading": {"force": 2e-4 * modulus * length**2},
-    }
+    shape = {"type": "quadric", "radius_x": radius_x * length, "radius_y": radius_y * length}
+    skin, force = tensed(modulus, 0.02 * modulus * length), 2e-4 * modulus * length**2
+    return pressing(48, 0.4 * length, skin, shape, boundary=boundary, force=force)
 
 
 @pytest.mark.parametrize("boundary", ["free", "periodic"])

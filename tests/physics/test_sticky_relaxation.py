@@ -10,7 +10,7 @@ import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.results.path import path_variables
 from tests.adhesive_paths import FORCE, PARABOLOID, pulled_off, relaxing, solved
-from tests.tables_of_runs import coated, half_space, heights, layer
+from tests.tables_of_runs import coated, half_space, heights, layer, pressing
 
 # The units E* = R = w = 1 have slopes beyond the theory, a rough punch few cells in its zone.
 pytestmark = pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")
@@ -20,18 +20,9 @@ LINEAR: dict[str, Any] = {"type": "linear", "work_of_adhesion": 1.0, "strength":
 
 def configuration(**changes: Any) -> dict[str, Any]:
     """Return a run in which a paraboloid is pressed, held and pulled, with changes."""
-    return {
-        "grid": {"points": 24, "size": 6.0, "boundary": "free"},
-        "kernel": relaxing(),
-        "indenter": PARABOLOID,
-        "interaction": LINEAR,
-        "loading": {
-            "depth": [0.2, 0.4, 0.4, 0.2, -0.2, -0.6, -0.9],
-            "time": [0.0, 1.0, 9.0, 9.0, 9.5, 10.5, 11.0],
-        },
-        "outputs": [],
-        **changes,
-    }
+    depth, time = [0.2, 0.4, 0.4, 0.2, -0.2, -0.6, -0.9], [0.0, 1.0, 9.0, 9.0, 9.5, 10.5, 11.0]
+    tables = pressing(24, 6.0, relaxing(), PARABOLOID, depth=depth, time=time)
+    return {**tables, "interaction": LINEAR, "outputs": [], **changes}
 
 
 def test_springs_that_relax_open_as_the_law_softens() -> None:

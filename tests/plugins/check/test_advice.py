@@ -17,7 +17,7 @@ from pellicle_axisymmetric.indentation import indent
 from pellicle_check.advice import advise
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid
 from tests.command import call
-from tests.tables_of_runs import RUN, self_affine
+from tests.tables_of_runs import RUN, pressing, self_affine, tensed
 
 MODULUS, DEPTH = 1e4, 2e-6
 SHAPES: dict[str, tuple[dict[str, Any], HasAbelSlope]] = {
@@ -28,15 +28,8 @@ SHAPES: dict[str, tuple[dict[str, Any], HasAbelSlope]] = {
 
 def run(points: int = 64, shape: str = "paraboloid", tension: float = 0.05, **more: Any) -> pl.Run:
     """Return a run whose exact force is known."""
-    return pl.Run(
-        **{
-            "grid": {"points": points, "size": 4e-5},
-            "kernel": {"type": "tensed_membrane", "reduced_modulus": MODULUS, "tension": tension},
-            "indenter": SHAPES[shape][0],
-            "loading": {"depth": [DEPTH / 2, DEPTH]},
-            **more,
-        }
-    )
+    skin, depths = tensed(MODULUS, tension), [DEPTH / 2, DEPTH]
+    return pl.Run(**pressing(points, 4e-5, skin, SHAPES[shape][0], depth=depths) | more)
 
 
 @pytest.mark.slow

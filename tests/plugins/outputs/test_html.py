@@ -23,7 +23,7 @@ import pellicle as pl
 from pellicle.runs import solve as solving
 from pellicle_plugins.outputs.step_figures import cross_section
 from tests.plugins.outputs.shared import bead
-from tests.tables_of_runs import self_affine
+from tests.tables_of_runs import interrupt, self_affine
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
@@ -285,15 +285,7 @@ def test_values_that_are_not_numbers(tmp_path: Path) -> None:
 
 def test_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The page of the steps that are there says that they are not all."""
-    solve, calls = solving.solve_step, []
-
-    def once(*arguments: Any) -> Any:
-        calls.append(arguments)
-        if len(calls) == 2:
-            raise KeyboardInterrupt
-        return solve(*arguments)
-
-    monkeypatch.setattr(solving, "solve_step", once)
+    interrupt(monkeypatch)
     with pytest.raises(KeyboardInterrupt):
         page_of(tmp_path)
     page = Page(tmp_path / "odd.html")
