@@ -14,7 +14,7 @@ from scipy.special import beta
 import pellicle as pl
 from pellicle.arrays import Array
 from tests.docs.blocks import DOCS, ROOT
-from tests.tables_of_runs import coated, layer
+from tests.tables_of_runs import layer
 
 TABLES = {table.name: table for table in reference_tables.TABLES}
 SLOW = {
@@ -215,7 +215,7 @@ def test_the_solver_presses_a_paraboloid_into_a_layer(
     """At the depth of a radius of contact, the force is that of the table within 0.6 %."""
     entry = row("bonded_layer", s_over_a=ratio, nu=nu, a_over_h=confinement)
     base = layer("bonded_layer", A / confinement, nu, reduced_modulus=MODULUS)
-    kernel = coated(base, ratio * A * MODULUS / 2)
+    kernel = {"type": "coated", "substrate": base, "tension": ratio * A * MODULUS / 2}
     depth = entry["depth_over_Hertz"] * A**2 / RADIUS
     expected = entry["F_over_Hertz"] * 4 * MODULUS * A**3 / (3 * RADIUS)
     assert force(kernel, PARABOLOID, depth, 80) == pytest.approx(expected, rel=6e-3)

@@ -258,7 +258,7 @@ def test_resumes_where_it_was_killed(file: Path, kept: int) -> None:
 def test_adds_variables(file: Path) -> None:
     """A result with an interaction has its variables, in the file and the table; others not."""
     run = pl.Run.from_toml(file)
-    table = pl.Run(**PULLED | {"outputs": [{"type": "csv"}]})
+    table = pl.Run.from_mapping(PULLED | {"outputs": [{"type": "csv"}]})
     with_law = pl.run(table, directory=file.parent, progress=False)
     assert set(with_law.dataset.data_vars) >= ADDED
     header = next(file.parent.glob("*.csv")).read_text(encoding="utf-8").partition("\n")[0]
