@@ -1,7 +1,5 @@
 """Paths of adhesive contact in the units E* = R = w = 1, with their closed theory."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import pi
 from typing import Any
@@ -12,6 +10,7 @@ import xarray as xr
 import pellicle as pl
 from pellicle_axisymmetric.adhesive_contact import Adhesion
 from pellicle_plugins.indenters.of_revolution import Paraboloid
+from tests.tables_of_runs import heights, self_affine
 
 FORCE = pi
 """πwR."""
@@ -84,11 +83,7 @@ def wavy(
         values,
         size=[1.0, 1 / points],
         boundary="periodic",
-        indenter={
-            "type": "heights",
-            "values": (height * np.cos(2 * pi * x))[:, None].tolist(),
-            "unit": 1.0,
-        },
+        indenter=heights((height * np.cos(2 * pi * x))[:, None]),
         **{"interaction": {"type": "jkr", "work_of_adhesion": work}, **options},
     )
 
@@ -105,13 +100,7 @@ def wave_pressure(half_width: float, height: float, work: float) -> float:
 def rough_path(points: int, length: float) -> xr.Dataset:
     """Return a path of a rough punch that sticks, there and back."""
     down = np.linspace(0.1, 0.4, 4)
-    rough = {
-        "type": "self_affine",
-        "rms_height": 0.1,
-        "hurst": 0.8,
-        "cutoff_wavelength": 0.5,
-        "seed": 1,
-    }
+    rough = self_affine(0.1, 0.8, 0.5, seed=1)
     work = {"type": "jkr", "work_of_adhesion": 0.02}
     path = [*down, *down[-2::-1], 0.0, -0.1, -0.2]
     return solved(points, length, path, indenter=rough, interaction=work)

@@ -4,8 +4,6 @@ A row has the seconds of a test that runs alone, so with all of the fixtures tha
 would else fall on the first that asks for them, which differs between selections.
 """
 
-from __future__ import annotations
-
 import csv
 import os
 import time

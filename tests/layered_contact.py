@@ -6,8 +6,6 @@ that of a half-space exponentially with q, so Gauss points give all digits.  The
 right and releases the energy G = π φ(a)² / (2E*a) per area.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

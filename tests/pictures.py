@@ -1,7 +1,5 @@
 """What tests see of a picture: its pixels, and where they have a colour."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import BinaryIO
 

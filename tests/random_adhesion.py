@@ -1,7 +1,5 @@
 """Random small problems of adhesion, judged by a descent with dense matrices."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -11,6 +9,7 @@ import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.contact.problem import Depth, Force
 from pellicle.runs.compose import compose
+from tests import tables_of_runs
 from tests.dense_adhesion import DenseContact
 
 # Rounds of a descent; one that has not settled then is counted as such.
@@ -86,13 +85,13 @@ def random_run(seed: int) -> dict[str, Any]:
         loads = span * np.array([-0.2, 0.15, 0.3, 0.0, -0.3]) * draw.uniform(0.5, 1.1)
     else:
         loads = span * np.array([0.02, 0.1, 0.2, 0.0, -0.03]) * draw.uniform(0.3, 1.5)
-    values = (heights - heights.max()).tolist()
-    return {
-        "grid": {"points": [nx, ny], "size": [1.0, ny / nx], "boundary": boundary},
-        "kernel": {"reduced_modulus": 1.0, **kernel},
-        "indenter": {"type": "heights", "values": values, "unit": 1.0},
+    solid, shape = (
+        {"reduced_modulus": 1.0, **kernel},
+        tables_of_runs.heights(heights - heights.max()),
+    )
+    path: dict[str, Any] = {"boundary": boundary, quantity: loads.tolist()}
+    return tables_of_runs.pressing([nx, ny], [1.0, ny / nx], solid, shape, **path) | {
         "interaction": {"work_of_adhesion": work, **law},
-        "loading": {quantity: loads.tolist()},
         "solver": {"type": "active_set", "tolerance": 1e-8},
     }
 

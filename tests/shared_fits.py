@@ -1,7 +1,5 @@
 """Lets the tests of several ways to one fit do it once, or without rivals."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -50,11 +50,11 @@ class _Rule(NamedTuple):
     """Least error of a contact of one cell, over the value of the step."""
 
 
-# The order cannot be read off three grids, whose differences vanish now and then. Measured by
-# tests/benchmarks/advice.py, the share of true errors below the estimate, and the median ratio to
-# them. Smooth contacts: force 0.97 and 3.4, depth 1.0 and 4.6, area 1.0 and 4.1; in runs of one
-# step force 0.96 and 2.9, depth 1.0 and 2.3, area 0.96 and 3.1. Rough: force 1.0 and 5.1, depth
-# 1.0 and 18, area 1.0 and 2.5, of one step 0.93. Punches: force 1.0 and 3.4, area 0.75 and 3.1.
+# The order cannot be read off three grids, whose differences vanish now and then. The share of true
+# errors below the estimate, and the median ratio to them (docs/measurements/expected_errors.csv).
+# Smooth contacts: force 0.97 and 3.2, depth 1.0 and 4.6, area 1.0 and 4.1; in runs of one step
+# force 0.96 and 2.9, depth 1.0 and 2.3, area 0.96 and 3.1. Rough: force 1.0 and 5.2, depth 1.0 and
+# 20, area 1.0 and 2.4, of one step 0.90. Punches: force 1.0 and 3.4, area 1.0 and 8.2.
 _SMOOTH = _Rule(2.0, 1.5, 0.3)
 _SMOOTH_DEPTH = _Rule(2.0, 1.5, 0.2)
 _OTHER = _Rule(1.0)

@@ -7,8 +7,6 @@ missed.
     python tests/benchmarks/adhesion.py --only speeds applications
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 import warnings

@@ -19,8 +19,6 @@ punch   free, self-affine (H = 0.7, rms 0.01, cut-off 16 cells), depth 0.1, to 1
 smooth  free, paraboloid of radius 2.236, depth 0.1118 (domain 2 a_H), to 1e-8
 """
 
-from __future__ import annotations
-
 import argparse
 import resource
 import time

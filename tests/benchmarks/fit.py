@@ -4,8 +4,6 @@ Run it: ``python tests/benchmarks/fit.py [curves [workers]]``.  Times of one cur
 processor; a folder is timed by a clock, files in and table out.
 """
 
-from __future__ import annotations
-
 import sys
 import tempfile
 from collections.abc import Callable

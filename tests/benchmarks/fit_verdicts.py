@@ -6,8 +6,6 @@ Each curve that is not in the file yet is fitted and added to it, so that an int
 on; then a table is printed.  Forces come from closed forms and from bracketing, not from effects.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections import Counter
@@ -24,10 +22,11 @@ import numpy as np
 from tables import print_head, print_row
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_fit.estimation.candidate import Candidate
 from pellicle_fit.selection.recipe import Answer
 from pellicle_fit.selection.verdict import Verdict
-from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array, path
+from tests.physics.frozen.fit_curves import MODULUS, RADIUS, hertz, path
 from tests.physics.frozen.fit_curves import Path as Rows
 from tests.physics.frozen.fit_curves import force as force_of
 
@@ -71,11 +70,6 @@ def rows_of(protocol: str, deepest: float) -> list[Rows]:
 
 
 # --- Solids ----------------------------------------------------------------------------------
-
-
-def hertz(depth: Array | float) -> Array:
-    """Return the force of Hertz [N]."""
-    return np.asarray(4 / 3 * MODULUS * np.sqrt(RADIUS) * np.maximum(depth, 0.0) ** 1.5)
 
 
 def in_series(

@@ -8,8 +8,6 @@ rough   periodic, self-affine (H = 0.8, rms 0.01 L, eight waves along the edge),
 free    paraboloid of radius L at a depth of 0.01 L, domain L/2
 """
 
-from __future__ import annotations
-
 import argparse
 import warnings
 from itertools import product

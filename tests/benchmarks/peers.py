@@ -18,8 +18,6 @@ and without threads; a tamaas built against a SIMD FFTW is faster.
     python tests/benchmarks/peers.py --points --free 512 1024 --peers ASPHER
 """
 
-from __future__ import annotations
-
 import argparse
 import re
 import subprocess

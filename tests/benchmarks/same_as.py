@@ -9,8 +9,6 @@ The exit code is 1 if anything differs.
     python tests/benchmarks/same_as.py HEAD~3 --only jkr "gap volume" --without status
 """
 
-from __future__ import annotations
-
 import argparse
 import io
 import json

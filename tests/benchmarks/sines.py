@@ -5,8 +5,6 @@ in it sines of 0.5, 2 and 10 Hz, one after the other. The slow course is that of
 under a tension with the effective modulus; the sines are those of a contact that stays.
 """
 
-from __future__ import annotations
-
 import csv
 import sys
 from collections.abc import Callable

@@ -19,8 +19,6 @@ units of the domain L, E* = 1, s = 2τ₀/E*. The runs of a study are punches wi
 differ by 1e-9 in tension, so that they cost the same and are not the same.
 """
 
-from __future__ import annotations
-
 import argparse
 import tempfile
 import time

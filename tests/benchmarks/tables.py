@@ -1,7 +1,5 @@
 """What scripts share: rows of a table, and measurements in processes of their own."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -4,8 +4,6 @@
 SurfaceTopography 1.27.1; nobody measured them.
 """
 
-from __future__ import annotations
-
 import warnings
 from datetime import datetime
 from pathlib import Path

@@ -8,8 +8,6 @@ A comment directly above a block says what its test needs to know and no reader 
 - ``<!-- untested: reason -->`` the block is only compiled, and its page says that.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field

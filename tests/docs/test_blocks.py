@@ -1,7 +1,5 @@
 """Runs every code block of README.md and docs/*.md, page by page, as a reader would."""
 
-from __future__ import annotations
-
 import doctest
 import importlib
 import math

@@ -1,7 +1,5 @@
 """The reference tables say what they hold, agree with other sources, and hold the solver."""
 
-from __future__ import annotations
-
 import csv
 import re
 from itertools import islice
@@ -16,6 +14,7 @@ from scipy.special import beta
 import pellicle as pl
 from pellicle.arrays import Array
 from tests.docs.blocks import DOCS, ROOT
+from tests.tables_of_runs import layer
 
 TABLES = {table.name: table for table in reference_tables.TABLES}
 SLOW = {
@@ -215,13 +214,8 @@ def test_the_solver_presses_a_paraboloid_into_a_layer(
 ) -> None:
     """At the depth of a radius of contact, the force is that of the table within 0.6 %."""
     entry = row("bonded_layer", s_over_a=ratio, nu=nu, a_over_h=confinement)
-    layer = {
-        "type": "bonded_layer",
-        "reduced_modulus": MODULUS,
-        "poissons_ratio": nu,
-        "thickness": A / confinement,
-    }
-    kernel = {"type": "coated", "substrate": layer, "tension": ratio * A * MODULUS / 2}
+    base = layer("bonded_layer", A / confinement, nu, reduced_modulus=MODULUS)
+    kernel = {"type": "coated", "substrate": base, "tension": ratio * A * MODULUS / 2}
     depth = entry["depth_over_Hertz"] * A**2 / RADIUS
     expected = entry["F_over_Hertz"] * 4 * MODULUS * A**3 / (3 * RADIUS)
     assert force(kernel, PARABOLOID, depth, 80) == pytest.approx(expected, rel=6e-3)
@@ -298,11 +292,7 @@ def test_the_page_on_grids_says_how_much_too_large_a_counted_area_is() -> None:
         for edge in np.linspace(2.3, 2.9, 24) * radius:
             data = solved(
                 grid={"points": 48, "size": edge},
-                kernel={
-                    "type": "tensed_membrane",
-                    "reduced_modulus": MODULUS,
-                    "tension": s_over_a * radius * MODULUS / 2,
-                },
+                kernel=tensed(s_over_a, radius),
                 indenter=PARABOLOID,
                 loading={"depth": depth},
             )

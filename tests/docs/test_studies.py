@@ -1,7 +1,5 @@
 """The studies of the paper's figures, smaller than they stand in docs/studies."""
 
-from __future__ import annotations
-
 import csv
 import re
 import tomllib

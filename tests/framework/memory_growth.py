@@ -4,8 +4,6 @@ One process loads the library; each kind is measured in a fork of it, so that no
 in what another has freed, and after a small run, which loads all else that the kind uses.
 """
 
-from __future__ import annotations
-
 import gc
 import importlib
 import json

@@ -1,7 +1,5 @@
 """Analysis of contact: closed forms of shapes, surfaces and contacts that have one."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -19,20 +17,9 @@ from pellicle.analysis import (
     spectrum,
 )
 from pellicle_plugins.closed_forms import hertz
+from tests.tables_of_runs import half_space, pressing, self_affine, tensed
 
-HALF_SPACE = {"type": "half_space", "reduced_modulus": "10 kPa"}
-ROUGH: dict[str, Any] = {
-    "grid": {"points": 48, "size": "1 mm"},
-    "kernel": {**HALF_SPACE, "type": "tensed_membrane", "tension": "10 mN/m"},
-    "indenter": {
-        "type": "self_affine",
-        "rms_height": "10 um",
-        "hurst": 0.5,
-        "cutoff_wavelength": "0.15 mm",
-        "seed": 2,
-    },
-    "loading": {"depth": ["8 um", "15 um"]},
-}
+HALF_SPACE = half_space("10 kPa")
 
 
 def square(points: int = 24, boundary: str = "free", **fields: Any) -> pl.Grid:
@@ -50,21 +37,18 @@ def filled(grid: pl.Grid, semi_x: float, semi_y: float, angle: float = 0.0) -> n
 @pytest.fixture(scope="module", params=["free", "periodic"])
 def rough(request: pytest.FixtureRequest) -> pl.Result:
     """Return rough contact, of which the last step has several patches."""
-    return pl.run({**ROUGH, "grid": {**ROUGH["grid"], "boundary": request.param}}, progress=False)
+    punch, skin = self_affine("10 um", 0.5, "0.15 mm", seed=2), tensed("10 kPa", "10 mN/m")
+    depths = ["8 um", "15 um"]
+    run = pressing(48, "1 mm", skin, punch, boundary=request.param, depth=depths)
+    return pl.run(run, progress=False)
 
 
 @pytest.fixture(scope="module")
 def elliptic() -> pl.Result:
     """Return the contact of an elliptic paraboloid without tension."""
-    return pl.run(
-        {
-            "grid": {"points": 48, "size": "0.8 mm"},
-            "kernel": HALF_SPACE,
-            "indenter": {"type": "quadric", "radius_x": "1 mm", "radius_y": "2 mm"},
-            "loading": {"depth": ["0 um", "50 um"]},
-        },
-        progress=False,
-    )
+    quadric = {"type": "quadric", "radius_x": "1 mm", "radius_y": "2 mm"}
+    run = pressing(48, "0.8 mm", HALF_SPACE, quadric, depth=["0 um", "50 um"])
+    return pl.run(run, progress=False)
 
 
 def test_patches_sum_to_the_contact(rough: pl.Result) -> None:

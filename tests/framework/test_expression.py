@@ -1,8 +1,10 @@
-"""Arithmetic over dotted names, and nothing but that."""
+"""Dotted names, arithmetic over them, nothing but that, and the columns of studies it makes."""
 
-from __future__ import annotations
-
+import csv
 import math
+import tomllib
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,8 +12,12 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
+import pellicle as pl
 from pellicle import ConfigError
 from pellicle.schema.expression import evaluate, names_in
+from pellicle.schema.model import get, walk
+from tests.command import call
+from tests.tables_of_runs import run_file
 
 NAMES = {"kernel.tension": 0.5, "kernel.reduced_modulus": 1e4, "depth": 3.0, "grid.size.0": 2.0}
 
@@ -97,3 +103,99 @@ def test_anything_else_is_refused(text: str, message: str) -> None:
 def test_names_that_are_needed() -> None:
     """Functions and constants are not among them, nor exponents of numbers."""
     assert names_in("sqrt(a.b) / pi + 1e3 * c") == {"a.b", "c"}
+
+
+RUN = pl.Run(
+    grid={"points": [8, 16], "size": "1 mm"},
+    kernel=pl.kernel("coated", tension=0.1, substrate={"type": "half_space", "reduced_modulus": 1}),
+    indenter=pl.indenter("sphere", radius=1e-3),
+    loading={"depth": ["1 um", "2 um"]},
+)
+TABLE = {"study": {"vary": {"kernel.tension": [1, 2]}}, "parts": [{"a": None}]}
+
+
+@pytest.mark.parametrize(
+    ("at", "path", "value"),
+    [
+        (RUN, "grid.points.1", 16),
+        (RUN, "grid.points.2", None),
+        (RUN, "kernel.substrate.reduced_modulus", 1.0),
+        (RUN, "kernel.nothing.more", None),
+        (TABLE, "study.vary.kernel.tension", [1, 2]),
+        (TABLE, "study.vary.kernel.tension.1", 2),
+        (TABLE, "parts.x", None),
+        (TABLE, "parts.0.a.b", None),
+    ],
+)
+def test_get(at: object, path: str, value: Any) -> None:
+    """A path leads through models, tables and lists, or to None."""
+    assert get(at, path) == value
+
+
+def test_walk_and_get_agree() -> None:
+    """Every value that a walk yields is found at its path; fields come with what describes them."""
+    walked = {path: (value, field) for path, value, field in walk(RUN)}
+    assert all(get(RUN, path) == value for path, (value, _) in walked.items())
+    assert {"grid.size.0", "kernel.substrate", "kernel.substrate.type", "solver.tolerance"} <= {
+        *walked
+    }
+    assert walked["grid.size.1"][1] is walked["grid.size"][1]
+    assert [path for path, _, _ in walk({"a": [1, {"b": 2}]})] == ["a", "a.0", "a.1", "a.1.b"]
+
+
+FILE = run_file("""
+[study.vary]
+kernel.tension = ["0.5 N/m", "1 N/m"]
+[study.derived]
+s = "2 * kernel.tension / kernel.reduced_modulus"
+pull = "force / (s * depth)"
+missed = "1 - converged - -converged * 2"
+""")
+
+
+def test_derived_columns(tmp_path: Path) -> None:
+    """They may name columns, the configuration and each other, and stand wherever runs do."""
+    (tmp_path / "s.toml").write_text(FILE, encoding="utf-8")
+    folder = tmp_path / "out"
+    call("run", tmp_path / "s.toml", "-o", folder)
+    table = xr.load_dataset(folder / "study.h5", engine="h5netcdf")
+    s = 2 * table["kernel.tension"] / 1e4
+    wanted = (table["force"] / (s * table["depth"])).values
+    np.testing.assert_allclose(table["pull"], wanted, rtol=1e-14)
+    assert table["pull"].attrs == {"long_name": "force / (s * depth)", "units": "Pa"}
+    with (folder / "study.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    np.testing.assert_allclose(
+        [float(row["pull [Pa]"]) for row in rows], wanted.ravel(), rtol=1e-14
+    )
+    assert {float(row["s [m]"]) for row in rows} == {1e-4, 2e-4}
+    assert {float(row["missed"]) for row in rows} == {2.0}
+    shown = call("show", folder)
+    head, *lines = [line.split() for line in shown.output.splitlines()[3:]]
+    assert head[-7:] == ["s", "[µm]", "pull", "[kPa]", "missed", "status", "file"]
+    shown_pull = [float(line[-4]) for line in lines]
+    np.testing.assert_allclose(shown_pull, wanted[:, -1] / 1e3, rtol=5.1e-4)
+
+
+UNITS = {
+    "force**2 * depth": "N2*m",
+    "kernel.tension / grid.size.0": "Pa",
+    "sqrt(contact_area) * (1 + 2)": "m",
+    "contact_area * 2": "m2",
+    "1 / contact_area**2": "m**-4",
+    "depth / contact_radius": "1",
+    "log(depth / contact_radius)": "1",
+    # Terms of different units, and powers whose value varies, have none.
+    "depth + force": "1",
+    "1 + depth": "1",
+    "depth ** (depth / contact_radius)": "1",
+}
+
+
+def test_units_of_derived_columns() -> None:
+    """They follow from the units of variables and fields, by dimensional analysis."""
+    content = tomllib.loads(FILE)
+    content["study"]["derived"] = {f"column_{n}": text for n, text in enumerate(UNITS)}
+    table = pl.run_study(pl.Study.from_mapping(content), progress=False)
+    units = [table[f"column_{n}"].attrs["units"] for n in range(len(UNITS))]
+    assert units == [*UNITS.values()]

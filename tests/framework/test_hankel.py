@@ -5,16 +5,15 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.integrate import quad
 
 from pellicle import ConfigError, Grid, displacement
+from pellicle.arrays import Array
 from pellicle.surface import operator_of
 from pellicle.surface.hankel import ACCURACY, Tabulated
 from pellicle.surface.influence import cell_coefficients
 from pellicle_plugins.kernels.half_spaces import TensedMembrane
 
-Array = NDArray[np.float64]
 Symbol = Callable[[Array], Array]
 
 LENGTHS = [0.0, 1e-6, 1e-3, 0.1, 1.0, 10.0, 1e3, 1e6]

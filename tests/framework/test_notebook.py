@@ -1,7 +1,5 @@
 """What a notebook shows of runs, studies and results."""
 
-from __future__ import annotations
-
 import re
 from html import unescape
 
@@ -10,10 +8,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import pellicle as pl
-from tests import small_run
+from tests import tables_of_runs
 
 TITLE = "<b>Bead</b> & tip"
-RUN = small_run.RUN | {
+RUN = tables_of_runs.RUN | {
     "title": TITLE,
     "grid": {"points": [24, 18], "size": ["0.4 mm", "0.3 mm"]},
     "loading": {"depth": ["5 um", "10 um"]},

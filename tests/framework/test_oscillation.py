@@ -1,7 +1,5 @@
 """The response of an oscillation: closed forms of signals, and of contacts in time."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 from math import isnan, nan, pi
 from pathlib import Path
@@ -14,7 +12,7 @@ import pellicle as pl
 from pellicle.analysis import Oscillation, oscillations
 from pellicle.variables import names_of
 from tests.command import call
-from tests.physics.tables_of_runs import coated, half_space, heights, relaxing
+from tests.tables_of_runs import coated, half_space, heights, pressing, relaxing
 
 K = 3.0 + 0.4j
 AMPLITUDE, FREQUENCY = 2e-6, 5.0
@@ -121,14 +119,10 @@ def expected(frequency: float) -> complex:
 
 def run(**changes: Any) -> dict[str, Any]:
     """Return the run of a flat punch that oscillates, with changes."""
-    return {
-        "grid": {"points": 8, "size": "0.5 mm", "boundary": "free"},
-        "kernel": relaxing(half_space(MODULUS), SHARE, TIME),
-        "indenter": {"type": "flat_punch", "radius": "0.2 mm"},
-        "loading": {"depth": LEGS},
-        "solver": {"type": "active_set", "tolerance": 1e-10},
-        "outputs": [],
-    } | changes
+    solid = relaxing(half_space(MODULUS), SHARE, TIME)
+    tables = pressing(8, "0.5 mm", solid, {"type": "flat_punch", "radius": "0.2 mm"}, depth=LEGS)
+    solver = {"type": "active_set", "tolerance": 1e-10}
+    return {**tables, "solver": solver, "outputs": [], **changes}
 
 
 def check(response: Oscillation, stiffness: complex, frequency: float) -> None:

@@ -1,7 +1,5 @@
 """The page: text stays text, nothing is loaded, maps hold their values."""
 
-from __future__ import annotations
-
 import base64
 import re
 import zlib

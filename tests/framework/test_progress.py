@@ -1,7 +1,5 @@
 """The progress bar, and Ctrl-C while it is there."""
 
-from __future__ import annotations
-
 import io
 import signal
 import threading
@@ -14,9 +12,9 @@ from rich.console import Console
 
 import pellicle as pl
 from pellicle.runs.progress import BatchProgress, ProgressMessage, RunProgress
-from tests import small_run
+from tests import tables_of_runs
 
-RUN = pl.Run(**small_run.RUN | {"title": "bead"})
+RUN = pl.Run(**tables_of_runs.RUN | {"title": "bead"})
 
 
 @dataclass(frozen=True)
@@ -49,17 +47,13 @@ def lines(progress: BatchProgress, width: int = 200) -> list[str]:
     return capture.get().splitlines()
 
 
-def _iterate(progress: RunProgress) -> None:
-    with progress:
+def test_bar_on_a_terminal(screen: io.StringIO) -> None:
+    """It shows step, iteration, residual and time left, and goes when the run ends."""
+    with RunProgress(2, True) as progress:
         for index in range(2):
             monitor = progress(index)
             for iteration, excess in enumerate([1e6, 1e3, 0.5]):
                 monitor(iteration, excess)
-
-
-def test_bar_on_a_terminal(screen: io.StringIO) -> None:
-    """It shows step, iteration, residual and time left, and goes when the run ends."""
-    _iterate(RunProgress(2, True))
     shown = screen.getvalue()
     for words in ("step 2/2", "iteration 2", "residual 5.0e-01 × tolerance", "left"):
         assert words in shown

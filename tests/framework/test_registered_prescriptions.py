@@ -1,7 +1,6 @@
 """What a prescription has to be to be registered, and how its runs resume."""
 
-from __future__ import annotations
-
+from functools import partial
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -12,17 +11,13 @@ from pydantic import Field
 import pellicle as pl
 from pellicle.components.installed import FAMILIES
 from pellicle.plugins.registry import checked_type, load
-from pellicle.runs import solve as solving
 from pellicle.units import Quantity
 from tests.framework.broken.catalogue import Broken, Taken, make
 from tests.framework.broken.prescriptions import PRESCRIPTIONS
+from tests.tables_of_runs import interrupt, paraboloid, pressing, tensed
 
-BASE: dict[str, Any] = {
-    "grid": {"points": 24, "size": "0.4 mm"},
-    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "0.1 N/m"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-}
 STAYS = Taken("registration looks at the class")
+pressed = partial(pressing, 24, "0.4 mm", tensed("10 kPa", "0.1 N/m"), paraboloid("1 mm"))
 NUMBER = (Annotated[float, Quantity("1"), Field(description="a number")], 1.0)
 
 
@@ -68,17 +63,9 @@ def test_resumes_in_the_middle(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, loading: dict[str, Any]
 ) -> None:
     """A run that was interrupted goes on at its next step, from the state of the one before."""
-    run = pl.Run(**BASE, loading=loading, outputs=[], title="path")
+    run = pl.Run(**pressed(**loading), outputs=[], title="path")
     whole = pl.run(run, directory=tmp_path / "whole", progress=False).dataset
-    solve, calls = solving.solve_step, []
-
-    def once(*arguments: Any) -> Any:
-        calls.append(arguments)
-        if len(calls) == 2:
-            raise KeyboardInterrupt
-        return solve(*arguments)
-
-    monkeypatch.setattr(solving, "solve_step", once)
+    calls = interrupt(monkeypatch)
     with pytest.raises(KeyboardInterrupt):
         pl.run(run, directory=tmp_path / "parts", progress=False)
     resumed = pl.run(run, directory=tmp_path / "parts", progress=False).dataset
@@ -91,5 +78,5 @@ def test_resumes_in_the_middle(
 
 def test_identity_of_a_run_is_kept() -> None:
     """The identity under which an unchanged run goes on in its file."""
-    run = pl.Run(**BASE, loading={"depth": ["5 um", "10 um"]})
+    run = pl.Run(**pressed(depth=["5 um", "10 um"]))
     assert run.identity == "c51d92339c970e7f2928af6eb2c8c669eafaf84bbe14d70919dcc5a8f9ca6f32"

@@ -1,6 +1,4 @@
-"""Cells that are too wide for a kernel on a free boundary are said to be."""
-
-from __future__ import annotations
+"""Cells too wide for kernel or contact, surfaces of no period and steep slopes are said to be."""
 
 import warnings
 from typing import Any
@@ -9,8 +7,12 @@ import numpy as np
 import pytest
 
 import pellicle as pl
+from pellicle import Grid
+from pellicle.analysis import steepest
+from pellicle.runs.compose import warn_of_period
 from pellicle.surface import operator_of
 from pellicle.surface.influence import error_of_cells, warn_of_cells
+from tests.tables_of_runs import half_space, heights, paraboloid, pressing, tensed
 
 THICK = 10e-6
 
@@ -50,13 +52,9 @@ def test_force_is_as_wrong_as_is_said() -> None:
     radius, width = 1e-3, 12 * THICK
 
     def force(points: int) -> float:
-        run = {
-            "grid": {"points": points, "size": 3.2 * width},
-            "kernel": layer(),
-            "indenter": {"type": "paraboloid", "radius": radius},
-            "loading": {"depth": width**2 / (4 * radius)},
-            "solver": {"type": "active_set", "tolerance": 1e-6},
-        }
+        run = pressing(
+            points, 3.2 * width, layer(), paraboloid(radius), depth=width**2 / (4 * radius)
+        ) | {"solver": {"type": "active_set", "tolerance": 1e-6}}
         return float(pl.run(run, progress=False).dataset["force"][0])
 
     with pytest.warns(UserWarning, match=r"grid\.points: cells of .* by 12% more .* use about"):
@@ -113,3 +111,192 @@ def test_kernel_that_overflows_at_short_waves_is_not_judged() -> None:
     error = error_of_cells(lambda q: np.sinh(q * 1e-5) / np.cosh(q * 1e-5), 1e-6)
     assert np.isnan(error)
     warn_of_cells(lambda q: np.full_like(q, np.nan), pl.Grid(points=16, size=1e-3))
+
+
+PERIODIC = pl.Grid(points=[24, 32], size=["0.6 mm", "0.8 mm"], boundary="periodic")
+X, Y = PERIODIC.coordinates()
+
+
+def test_a_tilted_surface_is_no_period() -> None:
+    """The step is that of the tilt, along the axis that it is along."""
+    with pytest.warns(UserWarning, match=r"along y: .* step of 775 µm .* 25 µm") as warning:
+        warn_of_period(np.broadcast_to(Y, PERIODIC.shape), PERIODIC)
+    assert len(warning) == 1
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_what_is_a_period_is_silent(seed: int) -> None:
+    """Rough surfaces made periodic, waves, noise and single peaks on the seam have no seam."""
+    rough = pl.indenter(
+        "self_affine", rms_height=1e-6, hurst=0.8, cutoff_wavelength=1e-4, seed=seed
+    )
+    noise = np.random.default_rng(seed).standard_normal(PERIODIC.shape)
+    wave = np.sin(2 * np.pi * (X / 6e-4 + Y / 8e-4) + seed)
+    peak = np.exp(-(((np.abs(X) - 3e-4) ** 2 + (np.abs(Y) - 4e-4) ** 2) / 1e-9))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for heights in (rough.profile(X, Y), noise, wave, peak):
+            warn_of_period(heights, PERIODIC)
+
+
+def test_a_free_grid_has_no_seam() -> None:
+    """There nothing goes on beyond the edge."""
+    free = pl.Grid(points=PERIODIC.points, size=PERIODIC.size)
+    warn_of_period(np.broadcast_to(Y, free.shape), free)
+
+
+GRID = Grid(points=(40, 60), size=(2.0, 2.4))
+AT_X, AT_Y = np.broadcast_arrays(*(axis - axis.mean() for axis in GRID.coordinates()))
+
+
+@pytest.mark.parametrize("angle", np.deg2rad([0.0, 20.0, 45.0, 70.0, 90.0]))
+def test_slope_of_a_roof_at_any_angle(angle: float) -> None:
+    """A plane slopes by the same in any direction, on cells that are not square, too."""
+    roof = -0.35 * np.abs(np.cos(angle) * AT_X + np.sin(angle) * AT_Y)
+    assert steepest(roof, AT_X < 9, GRID) == pytest.approx(0.35, rel=1e-9)
+
+
+def test_slope_of_a_paraboloid_is_that_at_its_rim() -> None:
+    """Less than half a cell inside of r/R."""
+    contact = AT_X**2 + AT_Y**2 < 0.7**2
+    assert 0.66 / 3 < steepest(-(AT_X**2 + AT_Y**2) / 6, contact, GRID) < 0.7 / 3
+
+
+def test_contacts_of_few_cells_have_the_slopes_between_them() -> None:
+    """A row has those along it, cells apart from each other none, nor has the ground beside."""
+    heights = -np.abs(AT_X)
+    heights[~np.isclose(np.abs(AT_Y), 0.02)] = -np.inf
+    assert steepest(heights, np.isfinite(heights), GRID) == pytest.approx(1.0)
+    assert steepest(heights, np.isclose(AT_X, 0.025) & np.isfinite(heights), GRID) == 0.0
+    assert steepest(heights, np.zeros(GRID.shape, dtype=bool), GRID) == 0.0
+
+
+@pytest.mark.parametrize("degrees", [0.0, 45.0])
+def test_a_turned_pyramid_is_as_steep(degrees: float) -> None:
+    """A pyramid whose sides slope by 0.35 is beyond the theory at any angle."""
+    x = (np.arange(32) + 0.5) / 16 - 1
+    angle = np.deg2rad(degrees)
+    one = np.cos(angle) * x[:, None] + np.sin(angle) * x
+    other = np.cos(angle) * x - np.sin(angle) * x[:, None]
+    pyramid = -0.35 * np.maximum(np.abs(one), np.abs(other))
+    with pytest.warns(pl.ConvergenceWarning, match=r"slopes in contact reach 0\.35"):
+        result = pl.run(
+            pressing(32, 2.0, half_space(), heights(pyramid), depth=0.15)
+            | {"interaction": {"type": "jkr", "work_of_adhesion": 1e-3}},
+            progress=False,
+        )
+    assert [step for step, _ in result.steep()] == [1]
+
+
+def test_a_step_between_any_two_rows_counts() -> None:
+    """The slope is the largest of blocks of rows, each of which holds the first row of the next."""
+    grid = Grid(points=(300, 400), size=(3.0, 4.0))
+    for row in range(1, 300):
+        heights = np.zeros(grid.shape)
+        heights[row:, 7] = -0.004
+        contact = np.zeros(grid.shape, dtype=bool)
+        contact[row - 1 : row + 1, 7] = True
+        assert steepest(heights, contact, grid) == pytest.approx(0.4)
+
+
+def test_slope_at_the_rim_of_a_contact_that_sticks() -> None:
+    """Under a tension τ₀ the surface meets the indenter at √(2w/τ₀), whatever the indenter is."""
+    run = pressing(32, 4.0, tensed(1.0, 1.0), paraboloid(2.0), depth=[0.03, -0.05]) | {
+        "interaction": {"type": "jkr", "work_of_adhesion": 0.5 * 0.35**2}
+    }
+    with pytest.warns(pl.ConvergenceWarning, match=r"slopes in contact reach 0\.35"):
+        pl.run(run, progress=False)
+
+
+RADIUS, MODULUS = 1e-3, 1e4
+POINTS, SIZE = 32, 5e-4
+COARSE = "too coarse for this contact"
+
+
+def pressed(points: Any = POINTS, indenter: Any = None, **loading: Any) -> pl.Result:
+    """Return a paraboloid, or another indenter, on a half-space."""
+    run = pressing(points, SIZE, half_space(MODULUS), indenter or paraboloid(RADIUS), **loading)
+    return pl.run(run, progress=False)
+
+
+def hertz(depths: Any) -> Any:
+    """Return the force [N]."""
+    return 4 / 3 * MODULUS * RADIUS**0.5 * np.asarray(depths) ** 1.5
+
+
+@pytest.mark.filterwarnings("ignore:.*too coarse for this contact")
+@pytest.mark.parametrize("points", [POINTS, POINTS + 1])
+def test_what_is_not_said_to_be_coarse_is_good(points: int) -> None:
+    """Of contacts about a grid point or about a cell those without a word are good to 3 %."""
+    depths = (np.linspace(0.1, 4, 40) * SIZE / points) ** 2 / RADIUS
+    result = pressed(points, depth=depths)
+    coarse = [step - 1 for step, _ in result.coarse()]
+    error = np.abs(result.dataset["force"].values / hertz(depths) - 1)
+    assert result.converged
+    assert np.delete(error, coarse).max() < 0.03
+    assert error[coarse].max() > 0.5
+    # The words come with few cells only, so not for ever.
+    assert coarse == list(range(len(coarse)))
+    assert len(coarse) < 25
+
+
+def test_a_contact_between_the_cells_is_warned_of() -> None:
+    """A depth at which no cell touches makes no force, and is not passed over in silence."""
+    with pytest.warns(pl.ConvergenceWarning, match=f"step 1 and 1 more: .*{COARSE}.* none of them"):
+        result = pressed(depth=[1e-9, 2e-9, 2e-5])
+    assert result.dataset["force"].values[0] == 0
+    assert [step for step, _ in result.coarse()] == [1, 2]
+
+
+def test_no_load_is_not_coarse() -> None:
+    """Nothing prescribed is nothing to resolve, and without force the lowest point just touches."""
+    result = pressed(force=["20 uN", 0])
+    assert list(result.dataset["status"].values) == ["converged", "converged"]
+    assert result.dataset["depth"].values[1] == 0
+    assert pressed(depth=0).dataset["status"].item() == "converged"
+
+
+ONE_LINE = heights(-(np.linspace(-1e-2, 1e-2, 64)[:, None] ** 2))
+
+
+@pytest.mark.parametrize(
+    ("points", "indenter"),
+    [
+        (1, {}),
+        ([1, 64], {}),
+        ([64, 1], {}),
+        ([64, 1], ONE_LINE),
+        ([64, 1], {"type": "sum", "parts": [paraboloid(1e-3), ONE_LINE]}),
+    ],
+)
+def test_a_free_grid_one_cell_wide_has_an_edge(points: Any, indenter: dict[str, Any]) -> None:
+    """The contact reaches beyond a strip of cells, and beyond a single one."""
+    words = "reaches the edge" if points == 1 else 'give grid.boundary = "periodic"'
+    with pytest.warns(pl.ConvergenceWarning, match=words):
+        result = pressed(points, indenter=indenter, depth=2e-5)
+    code = "CONTACT_AT_EDGE" if points == 1 else "STRIP"
+    assert result.dataset["status_code"].item() == code
+
+
+@pytest.mark.parametrize(("x", "y"), [(-0.45, 0.0), (0.45, 0.0), (0.0, -0.45), (0.0, 0.45)])
+def test_each_edge_of_a_free_domain_is_one(x: float, y: float) -> None:
+    """A contact that leaves by one edge alone is told; turned, the problem is the same."""
+    shifted = {"type": "shifted", "x": x * SIZE, "y": y * SIZE, "part": paraboloid(RADIUS)}
+    with pytest.warns(pl.ConvergenceWarning, match="reaches the edge"):
+        result = pressed(indenter=shifted, depth=2e-5)
+    assert result.dataset["status_code"].item() == "CONTACT_AT_EDGE"
+
+
+def test_a_zone_that_reaches_the_edge_has_words_of_its_own() -> None:
+    """Without contact it is the zone that needs room; with room the same is said of neither."""
+    run = pressing(10, 1.0, half_space(), paraboloid(10.0), depth=-0.5) | {
+        "interaction": {"type": "dugdale", "work_of_adhesion": 1e-4, "range": 1.0}
+    }
+    for boundary in ("free", "periodic"):
+        grid = {**run["grid"], "boundary": boundary}
+        with pytest.warns(pl.ConvergenceWarning, match="the zone in which the interaction pulls"):
+            data = pl.run({**run, "grid": grid}, progress=False).dataset
+        assert data["status_code"].item() == "ZONE_AT_EDGE"
+        assert not data["contact"].any()
+        data = pl.run({**run, "grid": {**grid, "points": 24, "size": 12.0}}, progress=False).dataset
+        assert data["converged"].all()

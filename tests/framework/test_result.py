@@ -1,8 +1,7 @@
-"""Results: what they know, and saving and loading them."""
-
-from __future__ import annotations
+"""Results: their variables and caveats, what they know, and saving and loading them."""
 
 import csv
+import math
 import re
 import tracemalloc
 from dataclasses import replace
@@ -16,16 +15,25 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle.components.installed import registry
+from pellicle.contact.caveats import (
+    Caveat,
+    Status,
+    by_phrase,
+    from_text,
+    ranked,
+    sentence_of,
+    status_of,
+    to_text,
+)
 from pellicle.plugins.origins import Origin
 from pellicle.results import storage
 from tests.command import call
+from tests.tables_of_runs import RUN, paraboloid, pressing, tensed
 
-CONFIGURATION: dict[str, Any] = {
+CONFIGURATION: dict[str, Any] = pressing(
+    [16, 12], "0.4472 mm", tensed("10 kPa", "10 mN/m"), paraboloid("1 mm"), depth=["10 um", "20 um"]
+) | {
     "title": "τ₀",
-    "grid": {"points": [16, 12], "size": "0.4472 mm"},
-    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "10 mN/m"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"depth": ["10 um", "20 um"]},
     "solver": {"type": "conjugate_gradient", "tolerance": 1e-6},
     "corrections": [{"type": "yastrebov"}],
 }
@@ -117,12 +125,9 @@ LAYER = {**SOLID, "thickness": "2 um"}
 )
 def test_beyond_the_theory(kernel: dict[str, Any], depth: float, message: str) -> None:
     """A solved contact through a layer, or as deep as the indenter is round, is warned of."""
-    run = {
-        "grid": {"points": 32, "size": 4 * (50e-6 * depth) ** 0.5},
-        "kernel": kernel,
-        "indenter": {"type": "paraboloid", "radius": "50 um"},
-        "loading": {"depth": [depth / 4, depth]},
-    }
+    run = pressing(
+        32, 4 * (50e-6 * depth) ** 0.5, kernel, paraboloid("50 um"), depth=[depth / 4, depth]
+    )
     if message:
         with pytest.warns(pl.ConvergenceWarning, match=f"step 2: .*{message}"):
             result = pl.run(run, progress=False)
@@ -137,14 +142,9 @@ def test_beyond_the_theory(kernel: dict[str, Any], depth: float, message: str) -
 
 def test_study_beyond_the_theory(tmp_path: Path) -> None:
     """A study warns once, with a run, its step and figures; its table keeps those of all runs."""
-    study = {
-        "grid": {"points": 40, "size": "90 um"},
-        "kernel": {"type": "bonded_layer", **LAYER},
-        "indenter": {"type": "paraboloid", "radius": "50 um"},
-        "loading": {"depth": ["1 um", "4 um"]},
-        "outputs": [],
-        "study": {"vary": {"loading.depth.1": ["1.2 um", "4 um", "5 um"]}},
-    }
+    study = pressing(
+        40, "90 um", {"type": "bonded_layer", **LAYER}, paraboloid("50 um"), depth=["1 um", "4 um"]
+    ) | {"outputs": [], "study": {"vary": {"loading.depth.1": ["1.2 um", "4 um", "5 um"]}}}
     for _ in ("solved", "resumed"):
         with pytest.warns(UserWarning, match="pressed through a layer") as caught:
             table = pl.run_study(study, tmp_path, progress=False)
@@ -164,3 +164,114 @@ def test_study_beyond_the_theory(tmp_path: Path) -> None:
         assert message.endswith(f"step 2: {texts[3]}")
     shown = call("show", tmp_path)
     assert message in shown.stderr
+
+
+@pytest.fixture(scope="module")
+def dataset() -> xr.Dataset:
+    """Return the dataset of three steps on a rectangle."""
+    run = pl.Run(**RUN | {"grid": {"points": [20, 16], "size": ["0.4 mm", "0.3 mm"]}})
+    return pl.run(run, progress=False).dataset
+
+
+def test_every_variable_is_described(dataset: xr.Dataset) -> None:
+    """Each variable and coordinate says what it is."""
+    assert all(variable.attrs["long_name"] for variable in dataset.variables.values())
+
+
+def test_coordinates_are_cell_centres(dataset: xr.Dataset) -> None:
+    """Coordinates are the centres of the cells in metres."""
+    x, y = pl.Grid(points=[20, 16], size=["0.4 mm", "0.3 mm"]).coordinates()
+    assert np.array_equal(dataset["x"], x.ravel())
+    assert np.array_equal(dataset["y"], y.ravel())
+    assert dataset["x"].attrs["units"] == dataset["y"].attrs["units"] == "m"
+
+
+def test_types(dataset: xr.Dataset) -> None:
+    """Contact and converged are flags, counts are whole, status is text."""
+    assert dataset["contact"].dtype == bool
+    assert dataset["converged"].dtype == bool
+    assert dataset["iterations"].dtype.kind == "i"
+    assert dataset["operator_applications"].dtype.kind == "i"
+    assert list(dataset["status"].values) == ["converged"] * 3
+
+
+def test_numbers_agree_with_fields(dataset: xr.Dataset) -> None:
+    """Force, area, fraction and mean pressure are those of the fields."""
+    cell, domain = 4e-4 / 20 * 3e-4 / 16, 4e-4 * 3e-4
+    contact = dataset["contact"].sum(("x", "y")).values
+    force = dataset["pressure"].sum(("x", "y")).values * cell
+    assert dataset["force"].values == pytest.approx(force, rel=1e-12)
+    assert dataset["mean_pressure"].values == pytest.approx(force / domain, rel=1e-12)
+    assert dataset["contact_area"].values == pytest.approx(contact * cell, rel=1e-12)
+    assert dataset["contact_fraction"].values == pytest.approx(contact * cell / domain, rel=1e-12)
+    assert np.array_equal(dataset["contact"], dataset["pressure"] > 0)
+    assert dataset["depth"].values == pytest.approx([5e-6, 10e-6, 15e-6])
+
+
+VALUES: dict[str, float | str] = {
+    "quantity": "contact area",
+    "unit": "m**2",
+    "below": 1e-12,
+    "above": 2e-12,
+    "end": "jump",
+    "remedy": "larger domain",
+    "loss": "known",
+    "off": "known error",
+    "error": 0.1,
+    "stop": "ITERATION_LIMIT",
+    "prescribed": "depth",
+    "reason": "no memory",
+}
+NUMBERS = re.compile(r"{(\w+):(?:[mNJ]|count|g|\.\d[ef])}")
+
+
+def _filled(status: Status) -> Caveat:
+    numbers = dict.fromkeys(NUMBERS.findall(status.value), 3)
+    return Caveat(status, {**VALUES, "value": 1e-6, "least_size": 1e-3, "lost": 1e-9, **numbers})
+
+
+@pytest.mark.parametrize("status", Status)
+def test_a_caveat_in_a_file_says_the_same(status: Status) -> None:
+    """Every template can be filled from what a file holds."""
+    caveat = _filled(status)
+    assert "{" not in caveat.sentence
+    (read,) = from_text(to_text([caveat]))
+    assert read == caveat
+    assert read.sentence == caveat.sentence
+
+
+def test_numbers_that_are_not_finite_are_read_again() -> None:
+    """An infinite length is one in a file too, and JSON stays JSON."""
+    text = to_text([Caveat(Status.JUMPED, {"lost": math.nan, "until": math.inf})])
+    ((_, values),) = from_text(text)
+    assert "Infinity" not in text
+    assert values["until"] == math.inf
+    assert math.isnan(float(values["lost"]))
+
+
+def test_a_failure_hides_the_rest_and_the_gravest_comes_first() -> None:
+    """The numbers of a failed step mean nothing; coarse cells are coarse in the zone, too."""
+    jumped, zone, coarse = map(_filled, (Status.JUMPED, Status.COARSE_ZONE, Status.COARSE))
+    load, nan = _filled(Status.LOAD), _filled(Status.NOT_FINITE)
+    assert ranked([jumped, load, nan, coarse]) == (nan,)
+    assert ranked([jumped, zone, coarse]) == (coarse, jumped)
+    assert ranked([jumped, zone]) == (zone, jumped)
+    assert ranked([]) == ()
+    assert status_of(ranked([jumped, load])) is Status.LOAD
+    assert status_of(()) is Status.CONVERGED
+
+
+def test_a_message_of_two_caveats_says_once_that_the_step_converged() -> None:
+    """The sentences follow each other, the gravest first."""
+    coarse, jumped = _filled(Status.COARSE), _filled(Status.JUMPED)
+    message = sentence_of([coarse, jumped])
+    assert message.startswith(coarse.sentence)
+    assert message.count("converged") == 1
+    assert message.endswith(jumped.sentence.partition("; ")[2])
+
+
+def test_caveats_are_grouped_by_phrase() -> None:
+    """The gravest first, within a phrase in the order of the steps."""
+    several = [_filled(s) for s in (Status.JUMPED, Status.COARSE, Status.JUMPED)]
+    groups = by_phrase(enumerate([*several, _filled(Status.COARSE_ZONE)]))
+    assert [[place for place, _ in group] for group in groups.values()] == [[1, 3], [0, 2]]

@@ -1,6 +1,4 @@
-"""Outputs that would write the same file are refused before anything is computed."""
-
-from __future__ import annotations
+"""What goes wrong at work, or would write one file twice, is told once and in words."""
 
 from contextlib import nullcontext
 from pathlib import Path
@@ -12,13 +10,11 @@ import pellicle as pl
 from pellicle.components import Output
 from pellicle.components.installed import registry
 from pellicle.config.file_names import refuse_shared_files
+from pellicle_plugins.outputs.csv import Csv
+from tests.command import call
+from tests.tables_of_runs import half_space, paraboloid, pressing
 
-RUN: dict[str, Any] = {
-    "grid": {"points": 16, "size": "1 mm"},
-    "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"depth": "10 um"},
-}
+RUN: dict[str, Any] = pressing(16, "1 mm", half_space("10 kPa"), paraboloid("1 mm"), depth="10 um")
 
 
 class Silent(pl.Output):
@@ -136,3 +132,90 @@ def test_suffixes_are_compared(one: str, other: str, same: bool) -> None:
     outputs = [Plain(ends=(end,)) for end in (one, other)]
     with pytest.raises(pl.ConfigError, match="leave it out") if same else nullcontext():
         refuse_shared_files(outputs)
+
+
+COARSE: dict[str, Any] = pressing(
+    16, "0.4 mm", half_space("10 kPa"), paraboloid("1 mm"), depth="20 um"
+)
+
+
+class Raising(pl.Output):
+    """Looks for what is not there."""
+
+    type: Literal["raising"] = "raising"
+
+    def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
+        """Fail."""
+        return (Path(runs.table["nothing"].item()),)
+
+
+def test_an_output_that_raises(tmp_path: Path) -> None:
+    """The exception is its own, with a note; the outputs after it leave their files."""
+    configuration = pl.Run(
+        **COARSE, outputs=[Raising(), pl.registry().make(pl.Output, {"type": "csv"})]
+    )
+    with pytest.raises(KeyError) as caught:
+        pl.run(configuration, directory=tmp_path, progress=False)
+    (note,) = caught.value.__notes__
+    assert note.startswith(f"output 'raising' failed ({__file__}, line ")
+    assert pl.load(tmp_path / "run.h5").converged
+    assert (tmp_path / "run.csv").is_file()
+
+
+def test_the_command_has_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """There is no traceback on the command line."""
+
+    def fail(*_: object) -> None:
+        raise ValueError("boom")
+
+    monkeypatch.setattr(Csv, "write", fail)
+    (tmp_path / "a.toml").write_text(
+        pl.Run(**COARSE, outputs=[{"type": "csv"}]).to_toml(), encoding="utf-8"
+    )
+    done = call("run", tmp_path / "a.toml", "-o", tmp_path / "a", code=2)
+    assert "error: output 'csv' failed: ValueError: boom\n" in done.output
+
+
+def test_coarse_steps_are_told_once(tmp_path: Path) -> None:
+    """The table marks them, and one line says why."""
+    configuration = pl.Run(**COARSE | {"loading": {"depth": ["1 nm", "2 nm", "20 um"]}}, outputs=[])
+    (tmp_path / "a.toml").write_text(configuration.to_toml(), encoding="utf-8")
+    done = call("run", tmp_path / "a.toml", "-o", tmp_path / "a")
+    assert [line.split()[-1] for line in done.output.splitlines()[1:4]] == [
+        "coarse",
+        "coarse",
+        "converged",
+    ]
+    assert done.output.count("too coarse for this contact") == 1
+    assert "warning: step 1 and 1 more: converged, but the cells are too coarse" in done.output
+
+
+def test_arguments_that_are_something_else(tmp_path: Path) -> None:
+    """A type, a table, a study and a folder are answered with what is wanted."""
+    kernel, grid = pl.kernel("half_space", reduced_modulus=1e4), pl.Grid(points=2, size=1.0)
+    with pytest.raises(
+        pl.ConfigError, match=r"kernel: 'half_space' is not a kernel; .*pellicle\.ker"
+    ):
+        pl.displacement([[1, 0], [0, 0]], kernel="half_space", grid=grid)  # type: ignore[arg-type]
+    with pytest.raises(
+        pl.ConfigError, match=r"grid: \{'points': 2\} is not a grid; .*pellicle\.Grid"
+    ):
+        pl.displacement([[1, 0], [0, 0]], kernel=kernel, grid={"points": 2})  # type: ignore[arg-type]
+    with pytest.raises(pl.ConfigError, match="study: makes this a study: use run_study"):
+        pl.run(COARSE | {"study": {"vary": {"indenter.radius": [1, 2]}}}, progress=False)
+    study: Any = pl.Study(run=COARSE, vary={"indenter.radius": [1, 2]})
+    with pytest.raises(pl.ConfigError, match=r"^Study.* is not a Run; give one, a table"):
+        pl.run(study, progress=False)
+    single: Any = study.points[0].run
+    with pytest.raises(pl.ConfigError, match=r"^Run.* is not a Study; give one, a table"):
+        pl.run_study(single, progress=False)
+    with pytest.raises(pl.StorageError, match="is a folder that holds no result yet; run it first"):
+        pl.load(tmp_path)
+
+
+def test_any_title_makes_a_file_name(tmp_path: Path) -> None:
+    """A title longer than a file name may be is cut, also in letters of several bytes."""
+    pl.run(COARSE | {"title": "张力膜" * 80, "outputs": []}, directory=tmp_path, progress=False)
+    (file,) = tmp_path.iterdir()
+    assert pl.load(file).dataset.attrs["title"] == "张力膜" * 80
+    assert file.name == f"{'张力膜' * 13}张.h5"

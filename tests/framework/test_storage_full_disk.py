@@ -1,7 +1,5 @@
 """A disk that takes no more in the midst of a file, as the system tells it, not as we imagine."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -18,7 +16,7 @@ if sys.platform == "win32":
 
 import resource
 
-from tests.small_run import RUN
+from tests.tables_of_runs import RUN
 
 
 @contextmanager

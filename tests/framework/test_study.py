@@ -1,7 +1,5 @@
 """Studies carried out: the table, what is repeated and what is not, and what goes wrong."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import os
@@ -25,10 +23,10 @@ from pellicle.studies import runner as study_module
 from pellicle.studies.table import StudyTable, write
 from pellicle_plugins.executors.execution import Serial
 from pellicle_plugins.executors.processes import Processes
-from tests import small_run
+from tests import tables_of_runs
 from tests.command import call
 
-RUN = small_run.RUN | {"title": "Study"}
+RUN = tables_of_runs.RUN | {"title": "Study"}
 
 # Whatever the cells are worth, the numbers are to be the same.
 pytestmark = pytest.mark.filterwarnings("ignore:.*too coarse for this contact")

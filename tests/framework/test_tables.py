@@ -1,8 +1,7 @@
-"""The tables of runs and studies as text; ``python tests/framework/test_tables.py`` writes them."""
-
-from __future__ import annotations
+"""The tables of runs, studies and inputs; ``python tests/framework/test_tables.py`` writes two."""
 
 import io
+import json
 import re
 import warnings
 from collections.abc import Iterator
@@ -13,35 +12,26 @@ import pytest
 from rich.console import Console
 
 import pellicle as pl
-from pellicle.config.describe import table_of
+from pellicle.config.describe import FieldRow, inputs, table_of
 from pellicle.results import step_tables
 from pellicle.results.dimensions import with_paths
 from pellicle.show import tables
 from pellicle.show.numbers import text_of
+from pellicle.units import readable
+from tests.tables_of_runs import coated, half_space, layer, paraboloid, pressing, relaxing, tensed
 
 FILE = Path(__file__).with_suffix(".txt")
-RUN: dict[str, Any] = {
+DEPTHS: dict[str, Any] = {"depth": ["10 um", "20 um"], "stiffness": True}
+RUN = pressing(16, "0.4 mm", tensed("10 kPa", "30 mN/m"), paraboloid("1 mm"), **DEPTHS) | {
     "title": "not an input",
-    "grid": {"points": 16, "size": "0.4 mm"},
-    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "30 mN/m"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"depth": ["10 um", "20 um"], "stiffness": True},
     "corrections": [{"type": "yastrebov"}],
     "outputs": [],
 }
-STICKING = RUN | {
-    "grid": {"points": 24, "size": "20 um"},
-    "kernel": {"type": "half_space", "reduced_modulus": "10 kPa"},
-    "indenter": {"type": "paraboloid", "radius": "20 um"},
-    "interaction": {"type": "linear", "work_of_adhesion": "0.5 mJ/m^2", "range": "0.3 um"},
-    "loading": {"depth": {"start": "-0.5 um", "stop": "0.2 um", "num": 3, "back": True}},
-}
+BACK = {"start": "-0.5 um", "stop": "0.2 um", "num": 3, "back": True}
+STICKING = RUN | pressing(24, "20 um", half_space("10 kPa"), paraboloid("20 um"), depth=BACK)
+STICKING["interaction"] = {"type": "linear", "work_of_adhesion": "0.5 mJ/m^2", "range": "0.3 um"}
 OSCILLATING = RUN | {
-    "kernel": {
-        "type": "viscoelastic",
-        "solid": {"type": "half_space", "reduced_modulus": "10 kPa"},
-        "relaxation": [{"fraction": 0.5, "time": "1 s"}],
-    },
+    "kernel": relaxing(half_space("10 kPa"), 0.5, "1 s"),
     "loading": {
         "depth": [
             {"to": "10 um", "time": "1 s", "num": 1},
@@ -116,3 +106,85 @@ def test_the_path_has_the_prefix_of_the_steps() -> None:
 
 if __name__ == "__main__":
     FILE.write_text(text(), encoding="utf-8")
+
+
+CONFIGURATION: dict[str, Any] = {
+    "title": "µ",
+    "grid": {"points": [16, 12], "size": ["0.4 mm", "0.3 mm"]},
+    "kernel": coated(layer("frictionless_layer", "0.1 mm", 0.3, youngs_modulus=1e4), "0.2 N/m"),
+    "indenter": {"type": "cone", "half_angle": "70 degree"},
+    "loading": {"depth": {"start": "1 um", "stop": "20 um", "num": 20}},
+    "corrections": [{"type": "yastrebov"}],
+    "outputs": [{"type": "curves", "published": [{"label": "a", "x": [3, 4], "y": [1, 2]}]}],
+}
+
+
+@pytest.fixture(scope="module")
+def table() -> dict[str, FieldRow]:
+    """Return the inputs of a run by their names."""
+    data = json.loads(pl.Run(**CONFIGURATION).to_json())
+    return {entry.name: entry for entry in inputs(data, pl.Run)}
+
+
+def test_values_have_units(table: dict[str, FieldRow]) -> None:
+    """Of components within components and of lists too; a long list is shortened, and says so."""
+    for name, value in {
+        "grid.points": "16, 12",
+        "grid.size": "400, 300 µm",
+        "grid.boundary": "free",
+        "kernel": "coated",
+        "kernel.tension": "200 mN/m",
+        "kernel.substrate": "frictionless layer",
+        "kernel.substrate.thickness": "100 µm",
+        "kernel.substrate.youngs_modulus": "10 kPa",
+        "indenter.half_angle": "70°",
+        "loading.depth": "1, 2, 3, 4, 5, 6, …, 20 µm (20 values)",
+        "solver.tolerance": "1e-08",
+        "corrections.0": "Yastrebov",
+        "outputs.0.published.0.y": "1, 2",
+    }.items():
+        assert table[name].value == value
+
+
+def test_inputs_are_explained(table: dict[str, FieldRow]) -> None:
+    """Every one of them says what it means, and components where they come from."""
+    assert all(entry.meaning for entry in table.values())
+    origin = table["kernel.substrate"].origin
+    assert origin is not None
+    assert origin.entry_point == "kernel.frictionless_layer"
+    assert origin.version == pl.__version__
+    components = {"kernel", "kernel.substrate", "indenter", "solver", "corrections.0", "outputs.0"}
+    assert {name for name, entry in table.items() if entry.origin} == components
+
+
+def test_what_nobody_explains_is_there() -> None:
+    """A component that is not installed here is listed with its bare numbers."""
+    data = {"kernel": {"type": "of_a_stranger", "stiffness": 3.0, "stops": [{"at": 1}]}}
+    assert [(entry.name, entry.value, entry.meaning) for entry in inputs(data, pl.Run)] == [
+        ("kernel", "of a stranger", ""),
+        ("kernel.stiffness", "3", ""),
+        ("kernel.stops.0.at", "1", ""),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "words"),
+    [
+        (0.0, "m", "0 m"),
+        (True, "1", "True"),
+        ([], "m", ""),
+        ("any text", "m", "any text"),
+        (12345678, "1", "12345678"),
+        ([1e-6, 2e-3], "N", "0.001, 2 mN"),
+        # A prefix is raised with the unit that it stands before: 10 nm² is 1e-17 m².
+        (1e-8, "m**2", "0.01 mm²"),
+        ([1e-12, 4e-12], "m2", "1, 4 µm²"),
+        (2e-11, "N*m", "20 pN·m"),
+        (9e7, "Pa/m", "90 MPa/m"),
+        (3e-24, "m4", "3e-24 m⁴"),
+        (5e6, "1/m", "5e+06 1/m"),
+    ],
+)
+def test_readable(value: Any, unit: str, words: str) -> None:
+    """Numbers get a prefix; what is no number is as it is."""
+    assert readable(value, unit) == words

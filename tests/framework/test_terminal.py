@@ -1,7 +1,5 @@
 """What the commands print: words and units, within the terminal, for programs too."""
 
-from __future__ import annotations
-
 import errno
 import io
 import json
@@ -30,16 +28,11 @@ from pellicle.show.sentences import outcome_of_cases
 from pellicle.show.tables import verdicts
 from pellicle_fit.config import FitConfig
 from tests.command import Cli, call
+from tests.tables_of_runs import paraboloid, pressing, tensed
 
-RUN: dict[str, Any] = {
-    "title": "Δ layer",
-    "grid": {"points": 16, "size": "0.4 mm"},
-    "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "30 mN/m"},
-    "indenter": {"type": "paraboloid", "radius": "1 mm"},
-    "loading": {"depth": ["10 um", "20 um"]},
-    "corrections": [{"type": "yastrebov"}],
-    "outputs": [],
-}
+RUN: dict[str, Any] = pressing(
+    16, "0.4 mm", tensed("10 kPa", "30 mN/m"), paraboloid("1 mm"), depth=["10 um", "20 um"]
+) | {"title": "Δ layer", "corrections": [{"type": "yastrebov"}], "outputs": []}
 STUDY = """
 grid = { points = 32, size = "0.4 mm" }
 kernel = { type = "tensed_membrane", reduced_modulus = "10 kPa" }

@@ -1,7 +1,5 @@
 """Quantities: numbers, texts with a unit and pint quantities, all held in SI."""
 
-from __future__ import annotations
-
 import math
 import re
 from fractions import Fraction

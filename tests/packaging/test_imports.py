@@ -1,13 +1,16 @@
-"""What an import costs: heavy packages are loaded by what needs them, not by the name alone."""
+"""What an import costs, and which names of the top level applications bring."""
 
 import json
 import re
 import subprocess
 import sys
+from importlib.metadata import EntryPoint
 
 import pytest
 
 import pellicle
+import pellicle as pl
+from pellicle.plugins import applications
 from pellicle.plugins.commands import commands
 
 HEAVY = {
@@ -97,3 +100,30 @@ def test_unknown_name_is_an_attribute_error() -> None:
     """A name that does not exist fails as in any module."""
     with pytest.raises(AttributeError, match="nonsense"):
         _ = pellicle.nonsense  # type: ignore[attr-defined]
+
+
+GROUP = "pellicle.applications"
+
+
+def test_a_name_is_that_of_the_application() -> None:
+    """The name at the top level and that of the package are one object."""
+    import pellicle_fit
+
+    assert pl.fit is pellicle_fit.fit
+    assert "fit" in dir(pl)
+
+
+def test_what_is_not_installed_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A part of the wheel that is missing costs its own names, and no others."""
+    unknown = "simulate_gel"
+    entries = [
+        EntryPoint("absent", "no_such_package", GROUP),
+        EntryPoint("fit", "pellicle_fit", GROUP),
+    ]
+    monkeypatch.setattr(applications, "entry_points", lambda group: entries)
+    assert applications.fit is pl.fit
+    with pytest.raises(pl.PluginError, match=r"brings pellicle\.simulate_gel; that of no_such_pa"):
+        getattr(applications, unknown)
+    monkeypatch.setattr(applications, "entry_points", lambda group: [])
+    with pytest.raises(AttributeError, match="'fit'"):
+        _ = applications.fit

@@ -1,7 +1,5 @@
 """Strangers' packages, and such as ``pellicle new --plugin`` writes: built, installed, run."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Physics holds with every registered solver."""
 
-from __future__ import annotations
-
 import pytest
 
 import pellicle as pl

@@ -9,8 +9,6 @@ and the force is 2E* ∫₀ᵃ φ dt. g − 1 falls as e^{−2qh}, and all funct
 points converge exponentially (Nyström).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

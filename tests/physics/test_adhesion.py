@@ -1,7 +1,5 @@
 """Adhesive contact against closed theory, and what must not change about it."""
 
-from __future__ import annotations
-
 from math import pi
 from typing import Any
 
@@ -21,8 +19,8 @@ from tests.adhesive_paths import (
     wave_pressure,
     wavy,
 )
-from tests.physics.tables_of_runs import heights, paraboloid, tensed
 from tests.random_adhesion import SAME, random_run, verdicts
+from tests.tables_of_runs import heights, paraboloid, tensed
 
 LINEAR = {"type": "linear", "work_of_adhesion": 1.0, "strength": 2.0}
 DUGDALE = {"type": "dugdale", "work_of_adhesion": 1.0, "strength": 1.0}

@@ -1,7 +1,5 @@
 """The path of a contact that sticks: its steps, and their starts. Units are E* = R = w = 1."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 

@@ -14,7 +14,7 @@ from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid
 from pellicle_plugins.validation.adhesive_path import curve_of
 from tests.layered_contact import LayeredContact, layered_contact
-from tests.physics.tables_of_runs import steps, tensed
+from tests.tables_of_runs import steps, tensed
 
 # The equations are linear, so that lengths and loads may be convenient numbers.
 pytestmark = pytest.mark.filterwarnings("ignore:.*are those of the (equations|model)")

@@ -1,7 +1,5 @@
 """Contacts on a gel that drains: closed forms, limits, steps and domains."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,7 +8,7 @@ import pytest
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle_plugins.kernels.poroelastic import drained_part
-from tests.physics.tables_of_runs import Table, coated, heights, paraboloid, steps, tensed
+from tests.tables_of_runs import Table, coated, heights, paraboloid, steps, tensed
 
 PUNCH: Table = {"type": "flat_punch", "radius": 1.0}
 # (F − F∞)/(F₀ − F∞) of a flat punch of radius a at times over a²/D, by dual integral equations.

@@ -1,14 +1,12 @@
 """Contact on finite layers and on springs, whose limits are known in closed form."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pytest
 
 import pellicle as pl
-from tests.physics.tables_of_runs import half_space, paraboloid, relaxing, step, steps
+from tests.tables_of_runs import half_space, paraboloid, relaxing, step, steps
 
 # The equations are linear, so that loads may be convenient numbers.
 pytestmark = pytest.mark.filterwarnings("ignore:.*to its rigid base")

@@ -10,7 +10,7 @@ import xarray as xr
 from pellicle_axisymmetric import Adhesion
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from pellicle_plugins.validation.adhesive_path import curve_of
-from tests.physics.tables_of_runs import steps, tensed
+from tests.tables_of_runs import steps, tensed
 
 pytestmark = [
     pytest.mark.filterwarnings(f"ignore:.*{words}")

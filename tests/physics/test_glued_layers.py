@@ -1,7 +1,5 @@
 """Contact on glued layers, on both boundaries, against an integral equation and closed forms."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,8 +7,8 @@ import numpy as np
 import pytest
 
 from tests.physics.punch_on_layers import punch_factor
-from tests.physics.tables_of_runs import heights, paraboloid, step
 from tests.plugins.kernels.elastic_stack import HalfSpace, Layer, stack_compliance
+from tests.tables_of_runs import heights, paraboloid, step
 
 YOUNGS, LENGTH = 1e4, 1e-3
 GEL, STIFFER = Layer(YOUNGS, 0.5, LENGTH / 2), Layer(10 * YOUNGS, 0.3, LENGTH / 2)

@@ -1,7 +1,5 @@
 """Derivatives of force and depth against central differences, within one set of contact cells."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -19,6 +17,7 @@ from pellicle.components.calls import solution_of
 from pellicle.contact.equilibrium import equilibrium_of
 from pellicle.runs.compose import compose
 from pellicle.schema.model import get, replaced
+from tests.tables_of_runs import half_space, layer, pressing, relaxing
 
 KERNELS: dict[str, dict[str, Any]] = {
     "half-space": {"type": "half_space", "reduced_modulus": 1e4},
@@ -31,12 +30,7 @@ KERNELS: dict[str, dict[str, Any]] = {
         "surface_stiffness": 2.0,
         "tension": 0.2,
     },
-    "bonded": {
-        "type": "bonded_layer",
-        "youngs_modulus": 1e4,
-        "poissons_ratio": 0.4,
-        "thickness": 1e-4,
-    },
+    "bonded": layer("bonded_layer", 1e-4, 0.4, youngs_modulus=1e4),
     "springs": {"type": "winkler", "foundation": 1e8},
     "layers": {
         "type": "layered",
@@ -50,12 +44,7 @@ KERNELS: dict[str, dict[str, Any]] = {
         "type": "coated",
         "tension": 0.1,
         "bending": 1e-11,
-        "substrate": {
-            "type": "frictionless_layer",
-            "youngs_modulus": 1e4,
-            "poissons_ratio": 0.3,
-            "thickness": 1e-4,
-        },
+        "substrate": layer("frictionless_layer", 1e-4, 0.3, youngs_modulus=1e4),
     },
 }
 KERNELS["membrane"]["tension"] = 0.1
@@ -78,14 +67,8 @@ def configuration(
     kernel: Any, boundary: str, indenter: Any, loading: Any, **more: Any
 ) -> dict[str, Any]:
     """Return a run on few cells, solved nearly to rounding."""
-    return {
-        "grid": {"points": [24, 20], "size": [4e-4, 3.6e-4], "boundary": boundary},
-        "kernel": kernel,
-        "indenter": indenter,
-        "loading": loading,
-        "solver": {"type": "active_set", "tolerance": 1e-12},
-        **more,
-    }
+    tables = pressing([24, 20], [4e-4, 3.6e-4], kernel, indenter, boundary=boundary, **loading)
+    return {**tables, "solver": {"type": "active_set", "tolerance": 1e-12}, **more}
 
 
 def solved(run: dict[str, Any]) -> Any:
@@ -276,11 +259,7 @@ def test_full_contact_moves_as_a_whole() -> None:
 
 def test_a_first_jump_of_a_solid_that_relaxes() -> None:
     """Is elastic; more steps are refused."""
-    solid = {
-        "type": "viscoelastic",
-        "solid": {"type": "half_space", "reduced_modulus": 1e4},
-        "relaxation": [{"fraction": 0.5, "time": 1.0}],
-    }
+    solid = relaxing(half_space(1e4), 0.5, 1.0)
     kernel = {"type": "coated", "tension": 0.1, "substrate": solid}
     run = configuration(kernel, "free", INDENTERS[0], {"depth": [8e-6], "time": [0.0]})
     paths = ["kernel.tension", "kernel.substrate.solid.reduced_modulus"]

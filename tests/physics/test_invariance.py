@@ -1,7 +1,5 @@
 """What must not change when the problem is turned, mirrored, scaled or split."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 import numpy as np
@@ -12,7 +10,7 @@ from hypothesis import strategies as st
 
 import pellicle as pl
 from pellicle.components import profile_of
-from tests.physics.tables_of_runs import heights, step, steps, tensed
+from tests.tables_of_runs import heights, pressing, self_affine, step, steps, tensed
 
 TOLERANCE = 1e-9
 
@@ -29,13 +27,9 @@ def _quadric(
     modulus: float = 1.0,
 ) -> dict[str, Any]:
     """Return the run of a quadric, with lengths and moduli in given units."""
-    radii = {"radius_x": radius_x * length, "radius_y": radius_y * length}
-    return {
-        "grid": {"points": 48, "size": 0.4 * length, "boundary": boundary},
-        "kernel": tensed(modulus, 0.02 * modulus * length),
-        "indenter": {"type": "quadric", **radii},
-        "loading": {"force": 2e-4 * modulus * length**2},
-    }
+    shape = {"type": "quadric", "radius_x": radius_x * length, "radius_y": radius_y * length}
+    skin, force = tensed(modulus, 0.02 * modulus * length), 2e-4 * modulus * length**2
+    return pressing(48, 0.4 * length, skin, shape, boundary=boundary, force=force)
 
 
 @pytest.mark.parametrize("boundary", ["free", "periodic"])
@@ -106,12 +100,7 @@ def test_a_wide_periodic_cell_comes_near_the_free_boundary() -> None:
 
 
 CELLS, PERIODIC = 20, pl.Grid(points=20, size=1.0, boundary="periodic")
-ROUGH: dict[str, Any] = {
-    "type": "self_affine",
-    "rms_height": 0.005,
-    "hurst": 0.8,
-    "cutoff_wavelength": 0.2,
-}
+ROUGH: dict[str, Any] = self_affine(0.005, 0.8, 0.2)
 
 
 def _moved(body: dict[str, Any], x: float, y: float) -> dict[str, Any]:

@@ -1,7 +1,5 @@
 """Loading paths, contact stiffness and prescribed areas, with every solver."""
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any
 
@@ -12,8 +10,8 @@ import xarray as xr
 import pellicle as pl
 from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
-from tests.physics.tables_of_runs import ROUGH as ROUGH_PUNCH
-from tests.physics.tables_of_runs import half_space, paraboloid, steps, tensed
+from tests.tables_of_runs import ROUGH as ROUGH_PUNCH
+from tests.tables_of_runs import half_space, paraboloid, steps, tensed
 
 SKIN, BARE = tensed(1e4, 0.1), half_space(1e4)
 SPRINGS = {"type": "winkler", "foundation": 1e8}
@@ -190,13 +188,8 @@ def test_depth_of_the_mean_plane(solver: str) -> None:
 def test_an_area_between_two_numbers_of_cells_is_said_to_be_unresolved() -> None:
     """An area of 4.45 cells is met by 4, within half a cell; no load is to blame for the rest."""
     grid = pl.Grid(points=16, size="0.5 mm")
-    configuration = {
-        "grid": grid,
-        "kernel": BARE,
-        "indenter": paraboloid(1e-3),
-        "loading": {"contact_area": 4.45 * grid.cell_area},
-    }
+    tables = {"grid": grid, "kernel": BARE, "loading": {"contact_area": 4.45 * grid.cell_area}}
     with pytest.warns(pl.ConvergenceWarning, match="nothing nearer can be resolved"):
-        result = pl.run(configuration, progress=False).dataset
+        result = pl.run(SMOOTH | tables, progress=False).dataset
     assert result["contact_area"].item() == pytest.approx(4 * grid.cell_area)
     assert result["status_code"].item() == "AREA"

@@ -1,7 +1,5 @@
 """A cantilever and a volume of the gap, against closed forms, limits and what a result has."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -16,7 +14,7 @@ from pellicle.contact import Problem, measure
 from pellicle.surface import operator_of
 from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Paraboloid
-from tests.physics.tables_of_runs import ROUGH, Table, half_space, paraboloid, steps, tensed
+from tests.tables_of_runs import ROUGH, Table, half_space, paraboloid, steps, tensed
 
 SKIN, BARE, TIP = tensed(1e4, 0.1), half_space(1e4), paraboloid(1e-3)
 pytestmark = pytest.mark.filterwarnings("ignore:.*too coarse for this contact")

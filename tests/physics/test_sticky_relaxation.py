@@ -1,18 +1,18 @@
-"""Contacts that stick on solids that relax: the rate decides with the range."""
+"""Contacts that stick: on solids that relax, and a rough punch on springs that jump alone."""
 
-from __future__ import annotations
-
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pytest
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle.results.path import path_variables
 from tests.adhesive_paths import FORCE, PARABOLOID, pulled_off, relaxing, solved
-from tests.physics.tables_of_runs import coated, half_space, heights
+from tests.tables_of_runs import coated, half_space, heights, layer, pressing
 
-# The units E* = R = w = 1 have slopes beyond the theory.
+# The units E* = R = w = 1 have slopes beyond the theory, a rough punch few cells in its zone.
 pytestmark = pytest.mark.filterwarnings("ignore::pellicle.errors.ConvergenceWarning")
 
 LINEAR: dict[str, Any] = {"type": "linear", "work_of_adhesion": 1.0, "strength": 2.0}
@@ -20,18 +20,9 @@ LINEAR: dict[str, Any] = {"type": "linear", "work_of_adhesion": 1.0, "strength":
 
 def configuration(**changes: Any) -> dict[str, Any]:
     """Return a run in which a paraboloid is pressed, held and pulled, with changes."""
-    return {
-        "grid": {"points": 24, "size": 6.0, "boundary": "free"},
-        "kernel": relaxing(),
-        "indenter": PARABOLOID,
-        "interaction": LINEAR,
-        "loading": {
-            "depth": [0.2, 0.4, 0.4, 0.2, -0.2, -0.6, -0.9],
-            "time": [0.0, 1.0, 9.0, 9.0, 9.5, 10.5, 11.0],
-        },
-        "outputs": [],
-        **changes,
-    }
+    depth, time = [0.2, 0.4, 0.4, 0.2, -0.2, -0.6, -0.9], [0.0, 1.0, 9.0, 9.0, 9.5, 10.5, 11.0]
+    tables = pressing(24, 6.0, relaxing(), PARABOLOID, depth=depth, time=time)
+    return {**tables, "interaction": LINEAR, "outputs": [], **changes}
 
 
 def test_springs_that_relax_open_as_the_law_softens() -> None:
@@ -129,3 +120,63 @@ def test_jkr_needs_a_tension_that_the_cells_resolve(cells: float, message: str) 
         pl.ConfigError, match=f"interaction.type: 'jkr'.*linear or dugdale.*{message}"
     ):
         pl.Run(**changes)
+
+
+POINTS = 20
+PATH = [-0.06, 0.0, 0.02, 0.05, 0.1, 0.15, 0.1, 0.05, 0.02, 0.0, -0.06]
+
+
+def _rough() -> Array:
+    x = (np.arange(POINTS) + 0.5) / POINTS - 0.5
+    rough = np.random.default_rng(0).normal(size=(POINTS, POINTS))
+    heights = 0.02 * rough - x[:, None] ** 2 - 1.3 * x**2
+    lowered: Array = heights - heights.max()
+    return lowered
+
+
+def _one_by_one(
+    heights: Array, work: float, reach: float, path: Sequence[float]
+) -> tuple[list[float], list[int]]:
+    """Return force and closed cells on springs of stiffness 1 under a linear law, of slope > 1.
+
+    A gap to the undeformed surface of less than ``reach`` closes; a closed one opens where the
+    spring pulls by more than the strength.
+    """
+    strength = 2 * work / reach
+    closed = np.zeros(heights.shape, dtype=bool)
+    forces, cells = [], []
+    for depth in path:
+        stretch = -depth - heights
+        closed = (stretch < reach) | (closed & (stretch < strength))
+        forces.append(float(-stretch[closed].sum()) / heights.size)
+        cells.append(int(closed.sum()))
+    return forces, cells
+
+
+@pytest.mark.parametrize(("work", "reach"), [(1e-3, 0.03), (1e-3, 0.04)])
+@pytest.mark.parametrize("turn", [np.s_[:, :], np.s_[::-1, :]])
+@pytest.mark.parametrize(
+    "kernel",
+    [
+        {"type": "winkler", "foundation": 1.0},
+        # p = M u/h with M = 1.225 E*, on cells five times as wide as the layer is thick.
+        layer("bonded_layer", 0.01, 0.3, reduced_modulus=0.01 / 1.225),
+    ],
+    ids=["springs", "layer"],
+)  # fmt: skip
+def test_springs_close_and_open_one_by_one(
+    kernel: dict[str, Any], turn: tuple[slice, slice], work: float, reach: float
+) -> None:
+    """Cells jump in and off where their own spring does, there and back, in mirror images too."""
+    rough = _rough()
+    law = {"type": "linear", "work_of_adhesion": work, "range": reach}
+    steps = solved(
+        POINTS, 0.0, PATH, size=1.0, kernel=kernel, indenter=heights(rough[turn]), interaction=law
+    )
+    forces, cells = _one_by_one(rough, work, reach, PATH)
+    if kernel["type"] == "winkler":
+        assert steps["contact"].values.sum((1, 2)).tolist() == cells
+        np.testing.assert_allclose(steps["force"], forces, atol=1e-7 * np.abs(forces).max())
+    else:
+        # Cells of the layer feel their neighbours a little.
+        assert steps["contact"].values.sum((1, 2)) == pytest.approx(cells, abs=3)

@@ -1,6 +1,4 @@
-"""Calls the command line in a folder with a run file."""
-
-from __future__ import annotations
+"""Calls the command line in a folder with a run file, and how a message reads."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -30,3 +28,11 @@ def refuse(cli: Cli) -> Callable[..., str]:
         return outcome.stderr
 
     return refused
+
+
+def says(message: str, *words: str) -> None:
+    """Check that a message holds all words and none of pydantic's."""
+    for word in words:
+        assert word in message, f"{word!r} is not in: {message}"
+    assert "Input should" not in message
+    assert "validation" not in message

@@ -1,7 +1,5 @@
 """Bad values that no single command shows: memory, many at once, scales that lack a unit."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -10,7 +8,8 @@ import pytest
 import pellicle as pl
 from pellicle import memory
 from pellicle.config.doubtful_scales import doubts_of_scale
-from tests.framework.bad_input.command_line import says
+from tests.framework.bad_input.conftest import says
+from tests.tables_of_runs import pressing, tensed
 
 
 def test_memory_is_estimated_before_starting(
@@ -47,12 +46,9 @@ def test_long_values_are_cut(refuse: Callable[..., str]) -> None:
     assert len(message) < 400
 
 
-BEAD: dict[str, Any] = {
-    "grid": {"points": 32, "size": "50 um"},
-    "kernel": {"type": "tensed_membrane", "reduced_modulus": "4 kPa", "tension": "5 mN/m"},
-    "indenter": {"type": "sphere", "radius": "20 um"},
-    "loading": {"depth": "1 um"},
-}
+BEAD: dict[str, Any] = pressing(
+    32, "50 um", tensed("4 kPa", "5 mN/m"), {"type": "sphere", "radius": "20 um"}, depth="1 um"
+)
 
 
 @pytest.mark.parametrize(

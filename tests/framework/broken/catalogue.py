@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import FunctionType
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import pellicle as pl
 from pellicle.components.installed import registry
@@ -71,9 +71,18 @@ class Family(NamedTuple):
     """By the rule of the kit that refuses them."""
 
 
+def subclass(good: Any, name: str, kinds: dict[str, Any], module: str, **members: Any) -> Any:
+    """Return a subclass of a component with annotations; it is pickled by its name in a module."""
+    made = type(name, (good,), {"__module__": module, "__annotations__": kinds, **members})
+    setattr(sys.modules[module], name, made)
+    return made
+
+
 def base(family: str, type_: str) -> Any:
-    """Return the class of a built-in component."""
-    return registry().components[family][type_].component
+    """Return a built-in component, to be broken under a type of its own."""
+    good = registry().components[family][type_].component
+    own = {"__doc__": f"{good.__name__} to be broken.", "type": "broken"}
+    return subclass(good, f"Broken{good.__name__}", {"type": Literal["broken"]}, __name__, **own)
 
 
 def make(family: Family, broken: Broken) -> Any:
@@ -87,7 +96,7 @@ def make(family: Family, broken: Broken) -> Any:
         changed.__name__ = member
         return changed
 
-    namespace: dict[str, Any] = {"__doc__": "Broken.", "__module__": good.__module__}
+    namespace: dict[str, Any] = {"__doc__": "Broken."}
     kinds = {key: kind for key, (kind, _) in broken.fields.items()}
     namespace |= {key: default for key, (_, default) in broken.fields.items()}
     for key, value in broken.members.items():
@@ -95,9 +104,7 @@ def make(family: Family, broken: Broken) -> Any:
         if isinstance(value, (str, tuple)):
             kinds[key] = ClassVar[Any]
     name = broken.fault.title().replace(" ", "")
-    made: Any = type(name, (good,), namespace | {"__annotations__": kinds})
-    # What is pickled is found by name in its module.
-    setattr(sys.modules[good.__module__], name, made)
+    made = subclass(good, name, kinds, good.__module__, **namespace)
     return made(**family.settings | broken.settings)
 
 

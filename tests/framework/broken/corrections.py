@@ -1,20 +1,14 @@
 """Corrections of the area of contact that break their contract."""
 
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from tests.framework.broken.catalogue import GRID, Broken, Family, Refused, Taken, base, run
 
-Yastrebov: Any = base("correction", "yastrebov")
+Correction: Any = base("correction", "yastrebov")
 NEAR = Taken("a run asks only whether the area is between 0 and that of the domain")
 GIVEN, NONE = Refused("read-only", error=ValueError), Refused("between 0 and 0 m², without contact")
-
-
-class Correction(Yastrebov):
-    """Correction to be broken."""
-
-    type: Literal["broken"] = "broken"
 
 
 def _on(boundary: str) -> Any:

@@ -6,19 +6,11 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, SerializationInfo, model_serializer
 
 from pellicle.units import Length
-from tests.framework.broken.catalogue import Broken, Family, Taken, base
-from tests.framework.broken.indenters import INDENTERS
-
-Paraboloid: Any = base("indenter", "paraboloid")
+from tests.framework.broken.catalogue import Broken, Family, Taken
+from tests.framework.broken.indenters import INDENTERS, Indenter
 
 
-class Shape(Paraboloid):
-    """Paraboloid to be broken."""
-
-    type: Literal["broken"] = "broken"
-
-
-class Forgetful(Shape):
+class Forgetful(Indenter):
     """Paraboloid that is written without what it was given."""
 
     @model_serializer
@@ -26,7 +18,7 @@ class Forgetful(Shape):
         return {"type": "broken", "radius": 2 * self.radius}
 
 
-class TwoFaced(Shape):
+class TwoFaced(Indenter):
     """Paraboloid that is another as a Python table than as JSON."""
 
     @model_serializer
@@ -35,7 +27,7 @@ class TwoFaced(Shape):
         return {"type": "broken", "radius": factor * self.radius}
 
 
-class Thawed(Shape):
+class Thawed(Indenter):
     """Paraboloid whose fields can be set."""
 
     model_config = ConfigDict(frozen=False)
@@ -69,4 +61,4 @@ BROKEN: dict[str, Any] = {
     ],
     "is_registered": Broken("type is taken", KIT, fields=PARABOLOID),
 }
-GENERAL = Family(Shape, {"radius": 1e-3}, INDENTERS.uses, ("run",), BROKEN)
+GENERAL = Family(Indenter, {"radius": 1e-3}, INDENTERS.uses, ("run",), BROKEN)

@@ -1,21 +1,15 @@
 """Interactions that break their contract."""
 
 from itertools import count
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from pellicle.errors import ConfigError
 from tests.framework.broken.catalogue import Broken, Family, Refused, base, run
 
-Linear: Any = base("interaction", "linear")
+Law: Any = base("interaction", "linear")
 WORK, RANGE = 0.05, 2e-6
-
-
-class Law(Linear):
-    """Linear softening to be broken."""
-
-    type: Literal["broken"] = "broken"
 
 
 def _run(law: Any, _: Any) -> str:

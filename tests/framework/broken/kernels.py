@@ -10,13 +10,7 @@ import pellicle as pl
 from pellicle.units import Modulus
 from tests.framework.broken.catalogue import GRID, RULE, Broken, Family, Refused, Taken, base, run
 
-HalfSpace: Any = base("kernel", "half_space")
-
-
-class Kernel(HalfSpace):
-    """Half-space to be broken."""
-
-    type: Literal["broken"] = "broken"
+Kernel: Any = base("kernel", "half_space")
 
 
 class Relaxing(Kernel):
@@ -26,7 +20,7 @@ class Relaxing(Kernel):
         return ((0.5, 1.0),)
 
     def scaled(self, share: float) -> Any:
-        return HalfSpace(reduced_modulus=share * self.reduced_modulus)
+        return pl.kernel("half_space", reduced_modulus=share * self.reduced_modulus)
 
     def without_skin(self) -> Any:
         return self
@@ -152,7 +146,7 @@ BROKEN: dict[str, Any] = {
         "skin is scaled", without_skin=lambda f: Relaxing(reduced_modulus=5e3)
     ),
     "without_skin_has_no_skin": relaxing(
-        "elastic solid", without_skin=lambda f: HalfSpace(reduced_modulus=1e4)
+        "elastic solid", without_skin=lambda f: pl.kernel("half_space", reduced_modulus=1e4)
     ),
 }
 KERNELS = Family(

@@ -1,7 +1,5 @@
 """Files that cannot be used, each wrong in one way, for the table of sentences."""
 
-from __future__ import annotations
-
 import pickle
 from io import BytesIO
 from pathlib import Path

@@ -5,8 +5,6 @@
 writes it anew; what has changed is read in its difference, as prose.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

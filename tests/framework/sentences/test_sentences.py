@@ -1,7 +1,5 @@
 """Commands name what is wrong, and say of it what the snapshot says."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterator

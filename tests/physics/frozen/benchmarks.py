@@ -1,7 +1,5 @@
 """The cases of the benchmarks whose operator applications are frozen."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product

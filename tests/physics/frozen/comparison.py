@@ -1,7 +1,5 @@
 """Values in few numbers, and which of them have changed by more than rounding does."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, Final
 

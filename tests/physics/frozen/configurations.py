@@ -3,8 +3,6 @@
 They are plain data, so that another version of pellicle can be given the same (`same_as.py`).
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -4,17 +4,15 @@ The random numbers are the bits of a generator whose stream is fixed, so that ev
 makes the same curves.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.special import beta, betainc, ndtri
 
-Array = NDArray[np.float64]
+from pellicle.arrays import Array
+
 RADIUS, MODULUS, TOUCH = 5e-6, 2e3, 1e-6
 """R [m], E* [Pa], and the position of first touch [m]."""
 BEFORE = 0.3
@@ -108,7 +106,8 @@ def path(segment: str, points: int, deepest: float, rate: float = 1.0) -> Path:
     return Path(deepest * depth, time / rate, sense)
 
 
-def _hertz(depth: Array) -> Array:
+def hertz(depth: Array | float) -> Array:
+    """Return the force of Hertz [N]."""
     return np.asarray(4 / 3 * MODULUS * np.sqrt(RADIUS) * np.maximum(depth, 0.0) ** 1.5)
 
 
@@ -117,7 +116,7 @@ def _tensed(rows: Path, values: Mapping[str, float]) -> Array:
     length = 2 * values["tension"] / MODULUS
     stretch = length / np.sqrt(RADIUS * np.maximum(rows.depth, 1e-30))
     stretch = np.clip(stretch, _STRETCH[0], 1e3)
-    return np.asarray(_hertz(rows.depth) * np.exp(_TENSED(np.log(stretch))))
+    return np.asarray(hertz(rows.depth) * np.exp(_TENSED(np.log(stretch))))
 
 
 def _relaxed(
@@ -138,7 +137,7 @@ def _relaxed(
         growth = primitive(time[out] - middle) - 2 * primitive(time[out] - 1)
         low, high = np.where(growth > 0, middle, low), np.where(growth > 0, high, middle)
     last[out] = np.maximum(low, 0.0)
-    return np.asarray(np.where(time > 0, _hertz(rows.depth.max()) * response(time, last), 0.0))
+    return np.asarray(np.where(time > 0, hertz(rows.depth.max()) * response(time, last), 0.0))
 
 
 def _power_law(rows: Path, values: Mapping[str, float]) -> Array:
@@ -182,7 +181,7 @@ def _adhesion(rows: Path, values: Mapping[str, float]) -> Array:
 
 def _layer(rows: Path, values: Mapping[str, float]) -> Array:
     share = np.sqrt(RADIUS * np.maximum(rows.depth, 0.0)) / values["thickness"]
-    return np.asarray(_hertz(rows.depth) * np.polynomial.Polynomial(_BONDED)(share))
+    return np.asarray(hertz(rows.depth) * np.polynomial.Polynomial(_BONDED)(share))
 
 
 def _ball(rows: Path, values: Mapping[str, float]) -> Array:
@@ -211,7 +210,7 @@ def force(rows: Path, effects: frozenset[str], values: Mapping[str, float]) -> A
     get a curve with something of both.
     """
     other = [_INSTEAD[name](rows, values) for name in sorted(effects & _INSTEAD.keys())]
-    total = other[0] if other else _hertz(rows.depth)
+    total = other[0] if other else hertz(rows.depth)
     if values.get("tension"):
         total = total + _tensed(rows, values)
     if "drag" in effects:

@@ -1,7 +1,5 @@
 """What is frozen of fits, in layers of their own tolerances, and what counts as a change."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """Not frozen, will change: what the stored values leave out, and the reason of each."""
 
-from __future__ import annotations
-
 from typing import Final
 
 VARIABLES: Final = {

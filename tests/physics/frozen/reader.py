@@ -5,8 +5,6 @@ are in SI, by name; effects that bend a force curve have names of their own, and
 sets of them.
 """
 
-from __future__ import annotations
-
 import tempfile
 import warnings
 from collections.abc import Collection, Iterator, Mapping
@@ -18,9 +16,9 @@ import cost
 import numpy as np
 import operator_counts
 import xarray as xr
-from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_fit.config import FitConfig
 from pellicle_fit.contact.curve import Curve
 from pellicle_fit.effect import Effect, Sizes, Solid
@@ -35,8 +33,6 @@ from pellicle_fit.selection.recipe import answer, with_estimates
 from tests import adhesive_paths
 from tests.physics.frozen.fit_curves import RADIUS, Case
 from tests.physics.frozen.not_frozen import VARIABLES
-
-Array = NDArray[np.float64]
 
 
 @contextmanager

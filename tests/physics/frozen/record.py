@@ -6,8 +6,6 @@
 What has changed by no more than rounding is left as it stands.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """The stored values: read, and written one variable a line."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Fits answer as they did: forces, χ², noise, minima, ends of intervals, verdicts."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.physics.frozen.fit_curves import CASES

@@ -1,6 +1,4 @@
-"""Runs have the values that they had: every variable, to 100 times the run's tolerance."""
-
-from __future__ import annotations
+"""Runs have the values that they had, to 100 times their tolerance, and solves the applications."""
 
 from functools import cache
 from typing import Any
@@ -8,7 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.physics.frozen.comparison import changes, compact
+from tests.physics.frozen.benchmarks import CASES, Case
+from tests.physics.frozen.comparison import COUNT_TOLERANCE, changes, compact
 from tests.physics.frozen.configurations import CONFIGURATIONS, RESUMED
 from tests.physics.frozen.reader import run_values
 from tests.physics.frozen.store import stored
@@ -53,3 +52,23 @@ def test_resumed_run(name: str) -> None:
 def test_all_that_is_stored_is_compared() -> None:
     """Each stored run has its configuration."""
     assert RUNS.keys() == CONFIGURATIONS.keys()
+
+
+COUNTS = stored("applications")
+
+
+@pytest.mark.parametrize(
+    "case",
+    [pytest.param(c, id=c.name, marks=[pytest.mark.slow] if c.slow else []) for c in CASES],
+)
+def test_applications(case: Case) -> None:
+    """A case takes as many as are stored."""
+    count, kept = case.applications(), COUNTS[case.name]
+    assert abs(count - kept) <= COUNT_TOLERANCE * kept, (
+        f"{kept} → {count}; if that is right: python tests/physics/frozen/record.py applications"
+    )
+
+
+def test_all_counts_that_are_stored_are_compared() -> None:
+    """Each stored count has its case."""
+    assert COUNTS.keys() == {case.name for case in CASES}

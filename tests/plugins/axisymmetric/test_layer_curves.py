@@ -1,20 +1,17 @@
 """Force curves on a bonded layer against independent solutions, limits and the FFT solver."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import curve_tables
 import numpy as np
 import pytest
 from layer_equation import half_space, moments
-from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_axisymmetric import layer_curves, splines
 from tests.layered_contact import layered_contact, tensed_layer_contact
 
-Array = NDArray[np.float64]
 SHAPES: dict[str, dict[str, float]] = {
     "paraboloid": {"radius": 2.0},
     "sphere": {"radius": 2.0},

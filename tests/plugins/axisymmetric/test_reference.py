@@ -1,9 +1,7 @@
-"""The semi-analytic reference solution of a run is the contact that the run prescribes."""
+"""The semi-analytic solution of a run is the contact prescribed; radii of cells by stiffness."""
 
-from __future__ import annotations
-
-from math import inf
-from typing import ClassVar, Literal
+from math import inf, pi
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
@@ -12,8 +10,11 @@ import xarray as xr
 import pellicle as pl
 from pellicle.arrays import Array
 from pellicle.results import StoredRuns
+from pellicle_axisymmetric.tensed_punch import punch
+from pellicle_plugins.validation.adhesive_path import excess_radius
 from pellicle_plugins.validation.reference import contact, exact, exact_line
 from tests.plugins.outputs.shared import bead
+from tests.tables_of_runs import pressing
 
 
 @pytest.mark.parametrize(
@@ -95,3 +96,29 @@ def test_numbers_along_a_line_are_the_equation_s(result: pl.Result) -> None:
     share = line["contact_area"].item() / result.grid.area
     assert line["contact_fraction"].item() == pytest.approx(share)
     assert "patches" not in line
+
+
+POINTS, SIZE = 64, 4.0
+SPACING = SIZE / POINTS
+
+
+@pytest.mark.parametrize("tension", [0.0, pytest.param(0.5, marks=pytest.mark.slow)])
+def test_cells_are_as_stiff_as_a_smaller_punch(tension: float) -> None:
+    """The stiffness of punches of cells, over five radii, is that of the corrected radius."""
+    kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=tension)
+    excess = []
+    for radius in np.linspace(0.8, 1.2, 5):
+        run: dict[str, Any] = pressing(
+            POINTS, SIZE, kernel, {"type": "flat_punch", "radius": radius}, depth=1.0
+        )
+        step = pl.run(run, progress=False).dataset.isel(step=0)
+        # Under tension some cells beside the rim carry no pressure.
+        counted = SPACING * np.sqrt(np.count_nonzero(np.hypot(step["x"], step["y"]) <= radius) / pi)
+        force, wider = (punch(counted + h, 1.0, tension, depth=1.0).force for h in (0.0, 1e-3))
+        excess.append((force - float(step["force"])) / (wider - force) * 1e-3)
+    assert np.mean(excess) == pytest.approx(excess_radius(kernel, SPACING), abs=0.03 * SPACING)
+
+
+def test_springs_count_their_cells() -> None:
+    """Separate springs are as stiff as the area of the cells."""
+    assert excess_radius(pl.kernel("winkler", foundation=1.0), SPACING) == 0

@@ -1,17 +1,15 @@
 """Bodies of revolution with an edge, and others, from the pressures of flat punches."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import pi, radians, tan
 from typing import Any, Literal
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.integrate import quad
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_axisymmetric import BodyOfRevolution
 from pellicle_axisymmetric.equation import solve
 from pellicle_axisymmetric.master_curves import _Power
@@ -22,8 +20,8 @@ from pellicle_plugins.indenters.of_revolution import (
     Paraboloid,
     Sphere,
 )
+from tests.tables_of_runs import pressing, tensed
 
-Array = NDArray[np.float64]
 Tip = BodyOfRevolution | FlatPunch
 WORN = Sphere(radius=5e-6, flat_radius=1e-6)
 BLUNT = Cone(half_angle=radians(70), tip_radius=20e-9)
@@ -187,12 +185,9 @@ def test_the_grid_solves_the_same(body: Sphere | Paraboloid | Cone) -> None:
     true = float(curve(body, np.array([depth]), length)[0])
     errors = []
     for points in (64, 128, 256):
-        run: dict[str, Any] = {
-            "grid": {"points": points, "size": 9 * edge},
-            "kernel": {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": length / 2},
-            "indenter": body.model_dump(),
-            "loading": {"depth": depth},
-        }
+        run: dict[str, Any] = pressing(
+            points, 9 * edge, tensed(1.0, length / 2), body.model_dump(), depth=depth
+        )
         errors.append(abs(float(pl.run(run).dataset["force"][-1]) / true - 1))
     assert errors[-1] < 5e-3
     assert errors[-1] < errors[0]

@@ -1,20 +1,23 @@
-"""The advice on a grid: expected errors hold, and what is suggested meets the allowed one."""
-
-from __future__ import annotations
+"""Checks: errors that a grid is to have, and cases of known solution that cannot be compared."""
 
 import json
+import math
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 
 import pellicle as pl
 from pellicle.components import HasAbelSlope
+from pellicle.runs import runner, validation
 from pellicle_axisymmetric.indentation import indent
 from pellicle_check.advice import advise
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid
 from tests.command import call
+from tests.tables_of_runs import RUN, pressing, self_affine, tensed
 
 MODULUS, DEPTH = 1e4, 2e-6
 SHAPES: dict[str, tuple[dict[str, Any], HasAbelSlope]] = {
@@ -25,15 +28,8 @@ SHAPES: dict[str, tuple[dict[str, Any], HasAbelSlope]] = {
 
 def run(points: int = 64, shape: str = "paraboloid", tension: float = 0.05, **more: Any) -> pl.Run:
     """Return a run whose exact force is known."""
-    return pl.Run(
-        **{
-            "grid": {"points": points, "size": 4e-5},
-            "kernel": {"type": "tensed_membrane", "reduced_modulus": MODULUS, "tension": tension},
-            "indenter": SHAPES[shape][0],
-            "loading": {"depth": [DEPTH / 2, DEPTH]},
-            **more,
-        }
-    )
+    skin, depths = tensed(MODULUS, tension), [DEPTH / 2, DEPTH]
+    return pl.Run(**pressing(points, 4e-5, skin, SHAPES[shape][0], depth=depths) | more)
 
 
 @pytest.mark.slow
@@ -186,12 +182,7 @@ def test_a_rough_surface_is_checked_on_grids_that_resolve_it(cells: int, tmp_pat
     rough = run(
         tension=0.0,
         grid={"points": 96, "size": 4e-5, "boundary": "periodic"},
-        indenter={
-            "type": "self_affine",
-            "rms_height": 1e-7,
-            "hurst": 0.8,
-            "cutoff_wavelength": cells * 4e-5 / 96,
-        },
+        indenter=self_affine(1e-7, 0.8, cells * 4e-5 / 96),
         loading={"mean_pressure": [50.0]},
     )
     (step,) = advise(rough, 0.01).steps
@@ -200,3 +191,39 @@ def test_a_rough_surface_is_checked_on_grids_that_resolve_it(cells: int, tmp_pat
     path.write_text(rough.to_toml(), encoding="utf-8")
     printed = call("check", path).stdout
     assert ("shortest wave of the indenter has 4 cells" in printed) == (cells == 4)
+
+
+def case(name: str, computed: Callable[[pl.Result], float], expected: float = 1.0) -> pl.Case:
+    """Return a case about the small run."""
+    return pl.Case(name, RUN, computed, expected, "N", 1e-3, "Hertz 1882")
+
+
+def test_a_case_that_raises_fails_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the function of a case raises is the problem of this case, and the rest is checked."""
+    cases = [
+        case("lost", lambda result: result.dataset["load"].item()),
+        case("good", lambda result: 1.0),
+    ]
+    lost, good = validation.validate(cases)
+    assert (lost.passed, good.passed) == (False, True)
+    assert lost.problem.startswith("KeyError: ")
+    assert math.isnan(lost.computed)
+    monkeypatch.setattr(validation, "validate", lambda: iter((lost, good)))
+    shown = call("validate", code=1)
+    assert "FAILED KeyError: " in shown.stdout
+    assert "1 of 2 cases failed" in shown.stdout
+
+
+def test_cases_in_a_row_share_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A configuration is solved once for all cases about it that follow each other."""
+    solve = Mock(side_effect=runner.solve)
+    monkeypatch.setattr(validation, "solve", solve)
+    checked = validation.validate(case(name, lambda result: 1.0) for name in "abc")
+    assert [one.case.name for one in checked] == ["a", "b", "c"]
+    solve.assert_called_once()
+
+
+def test_a_case_expects_a_value_with_a_relative_error() -> None:
+    """A true value of 0 is refused where the case is made."""
+    with pytest.raises(pl.ConfigError, match="expected: 0 has no relative error"):
+        case("nothing", lambda result: 0.0, expected=0.0)

@@ -3,51 +3,27 @@
 import builtins
 import os
 import signal
-import subprocess
 import sys
 import threading
 import time
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import cloudpickle
-import distributed
 import psutil
 import pytest
 from dask import config as configuration
 
 import pellicle as pl
 from pellicle.components import Say
-from pellicle.components.installed import registry
-from tests.plugins.executors.jobs import Job, silence
+from tests.plugins.executors.jobs import Job, dask, posix, silence, square, worker_of
 
 # Workers cannot import a module of a folder that is no package.
 cloudpickle.register_pickle_by_value(sys.modules[__name__])
 
-posix = pytest.mark.skipif(sys.platform == "win32", reason="has other signals")
-PATIENCE = 60.0
 
-
-def dask(**fields: Any) -> pl.Executor:
-    """Return the executor."""
-    return registry().make(pl.Executor, {"type": "dask", **fields})
-
-
-def square(job: Job, say: Say) -> int:
-    """Return the square of the number."""
-    return job.number**2
-
-
-def die_the_first_time(job: Job, say: Say) -> int:
-    """Kill the own worker at the second job, but for the second attempt; count all attempts."""
-    attempts = len(list(job.folder.glob(f"{job.number}-*")))
-    (job.folder / f"{job.number}-{attempts}").touch()
-    if job.number == 1 and attempts == 0:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return job.number
+ALONE = "--no-nanny", "--nthreads=1"
 
 
 def always_die(job: Job, say: Say) -> int:
@@ -96,21 +72,6 @@ def test_an_address_is_needed() -> None:
         assert part in str(error.value)
 
 
-@pytest.mark.slow
-@posix
-def test_task_of_a_killed_worker_runs_elsewhere(start_dask: Any, tmp_path: Path) -> None:
-    """The table is that of an undisturbed study, and no finished task was begun again."""
-    jobs, lines = [Job(i, tmp_path) for i in range(6)], list[str]()
-    with start_dask() as address:
-        told = dask(address=address).map(
-            die_the_first_time, jobs, lambda _, line: lines.append(line)
-        )
-        outcomes = dict(told)
-    assert outcomes == {job: job.number for job in jobs}
-    assert any(line.startswith("a worker was lost") for line in lines)
-    assert len(list(tmp_path.glob("1-*"))) == 2
-
-
 @posix
 def test_task_that_kills_every_worker_is_given_up(address: str) -> None:
     """It says how many died of it; the others are carried out."""
@@ -134,7 +95,11 @@ def test_no_workers_are_warned_of(start_dask: Any, monkeypatch: pytest.MonkeyPat
 def test_workers_may_come_later(start_dask: Any, tmp_path: Path) -> None:
     """Runs wait for the first worker, as a queue may take its time to start it, and tell of it."""
     lines: list[str] = []
-    with start_dask(0) as address, worker_of(address, tmp_path), warnings.catch_warnings():
+    with (
+        start_dask(0) as address,
+        worker_of(address, tmp_path, *ALONE, is_awaited=False),
+        warnings.catch_warnings(),
+    ):
         warnings.simplefilter("ignore", UserWarning)
         jobs = [Job(i) for i in range(3)]
         outcomes = dict(dask(address=address).map(square, jobs, lambda _, line: lines.append(line)))
@@ -220,22 +185,6 @@ def test_without_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
         list(dask(address="tcp://127.0.0.1:9").map(square, [Job(0)], silence))
 
 
-@contextmanager
-def worker_of(address: str, folder: Path, **environment: str) -> Iterator[None]:
-    """Start a worker, and end it afterwards."""
-    command = [
-        *(sys.executable, "-m", "distributed.cli.dask_worker", address),
-        *("--host", "127.0.0.1", "--no-nanny", "--no-dashboard", "--nthreads=1"),
-        *("--local-directory", str(folder)),
-    ]
-    worker = subprocess.Popen(command, env=os.environ | environment, stderr=subprocess.DEVNULL)
-    try:
-        yield
-    finally:
-        worker.terminate()
-        worker.wait()
-
-
 @pytest.mark.slow
 @posix
 def test_workers_without_pellicle(start_dask: Any, tmp_path: Path) -> None:
@@ -246,9 +195,7 @@ def test_workers_without_pellicle(start_dask: Any, tmp_path: Path) -> None:
         "raise ModuleNotFoundError(\"No module named 'pellicle_plugins'\", name='pellicle_plugins')"
     )
     path = str(hidden.parent)
-    with start_dask(0) as address, worker_of(address, tmp_path, PYTHONPATH=path):
-        with distributed.Client(address, set_as_default=False) as client:
-            client.wait_for_workers(1, timeout=PATIENCE)
+    with start_dask(0) as address, worker_of(address, tmp_path, *ALONE, PYTHONPATH=path):
         ((_, outcome),) = dask(address=address).map(square, [Job(0)], silence)
     assert isinstance(outcome, pl.PellicleError)
     assert "workers lack pellicle_plugins; install there" in str(outcome)

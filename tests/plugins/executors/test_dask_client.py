@@ -1,7 +1,5 @@
 """How the executor dask finds its scheduler: a file, TLS, or jobs of a batch system."""
 
-from __future__ import annotations
-
 import gc
 import json
 import re
@@ -14,18 +12,12 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-import cloudpickle
 import pytest
 from dask import config as configuration
 
 import pellicle as pl
-from pellicle.components import Say
-from pellicle.components.installed import registry
 from pellicle.schema.from_file import paths_relative_to
-from tests.plugins.executors.jobs import Job, silence
-
-# Workers cannot import a module of a folder that is no package.
-cloudpickle.register_pickle_by_value(sys.modules[__name__])
+from tests.plugins.executors.jobs import Job, dask, silence, square
 
 REFUSED = """
 import json, os, sys
@@ -47,7 +39,7 @@ echo "Submitted batch job $!"
 
 def squares(**fields: Any) -> dict[Job, Any]:
     """Return the squares of the numbers of all jobs, by the executor."""
-    return dict(registry().make(pl.Executor, {"type": "dask", **fields}).map(square, JOBS, silence))
+    return dict(dask(**fields).map(square, JOBS, silence))
 
 
 def refusal(**fields: Any) -> str:
@@ -57,11 +49,6 @@ def refusal(**fields: Any) -> str:
     """
     command = [sys.executable, "-c", REFUSED, json.dumps(fields)]
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
-
-
-def square(job: Job, say: Say) -> int:
-    """Return the square of the number."""
-    return job.number**2
 
 
 @pytest.fixture(scope="module")

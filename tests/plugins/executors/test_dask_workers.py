@@ -1,60 +1,28 @@
 """Workers of a dask scheduler: large and small ones, late ones, those that are killed or end."""
 
-from __future__ import annotations
-
 import os
 import signal
-import subprocess
 import sys
 import time
 from collections import defaultdict
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import cloudpickle
-import distributed
 import pytest
 
-import pellicle as pl
 from pellicle.batch import locked
 from pellicle.components import Say
-from pellicle.components.installed import registry
-from tests.conftest import end
-from tests.plugins.executors.jobs import Job, silence
+from tests.plugins.executors.jobs import Job, dask, posix, silence, worker_of
 
 # Workers cannot import a module of a folder that is no package.
 cloudpickle.register_pickle_by_value(sys.modules[__name__])
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(sys.platform == "win32", reason="has other signals"),
-]
+pytestmark = [pytest.mark.slow, posix]
 GB = 10**9
-PATIENCE = 60.0
 # The first death that is counted ends a task.
 STRICT = {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "0"}
-
-
-def dask(**fields: Any) -> pl.Executor:
-    """Return the executor."""
-    return registry().make(pl.Executor, {"type": "dask", **fields})
-
-
-@contextmanager
-def worker_of(address: str, folder: Path, *options: str) -> Iterator[subprocess.Popen[bytes]]:
-    """Start a worker process of its own, wait until its scheduler knows it, and end it."""
-    command = [sys.executable, "-m", "distributed.cli.dask_worker", address, "--no-dashboard"]
-    command += ["--host", "127.0.0.1", "--local-directory", str(folder), *options]
-    with distributed.Client(address, set_as_default=False) as client:
-        before = len(client.nthreads())
-        worker = subprocess.Popen(command, stderr=subprocess.DEVNULL)
-        try:
-            client.wait_for_workers(before + 1, timeout=PATIENCE)
-            yield worker
-        finally:
-            end(worker)
 
 
 def trace(job: Job, seconds: float) -> int:
@@ -196,8 +164,8 @@ def test_larger_worker_that_joins_late(start_dask: Any, tmp_path: Path) -> None:
 
 
 def test_run_of_a_killed_worker_goes_elsewhere(start_dask: Any, tmp_path: Path) -> None:
-    """Of three worker processes one is killed; its run is begun again, no other is."""
-    jobs = [Job(i, tmp_path) for i in range(9)]
+    """Of three worker processes one is killed, which is told; its run is begun again, no other."""
+    jobs, lines = [Job(i, tmp_path) for i in range(9)], list[str]()
     single = ("--nthreads", "1", "--no-nanny")
     with (
         start_dask(0) as address,
@@ -205,8 +173,12 @@ def test_run_of_a_killed_worker_goes_elsewhere(start_dask: Any, tmp_path: Path) 
         worker_of(address, tmp_path, *single),
         worker_of(address, tmp_path, *single),
     ):
-        outcomes = dict(dask(address=address).map(kill_the_first_time, jobs, silence))
+        told = dask(address=address).map(
+            kill_the_first_time, jobs, lambda _, line: lines.append(line)
+        )
+        outcomes = dict(told)
     assert outcomes == {job: job.number for job in jobs}
+    assert any(line.startswith("a worker was lost") for line in lines)
     done = [number for numbers in traces(tmp_path).values() for number, *_ in numbers]
     assert sorted(done) == list(range(9))
     assert len(traces(tmp_path)) == 2

@@ -17,14 +17,13 @@ import pellicle as pl
 from pellicle import memory
 from pellicle.components import Say
 from pellicle.components.installed import registry
-from tests.plugins.executors.jobs import Job, silence
+from tests.plugins.executors.jobs import PATIENCE, Job, posix, silence
+from tests.tables_of_runs import paraboloid, pressing, tensed
 
 # Workers cannot import a module of a folder that is no package.
 cloudpickle.register_pickle_by_value(sys.modules[__name__])
 
-posix = pytest.mark.skipif(sys.platform == "win32", reason="has other signals")
 GIGABYTE = 10**9
-PATIENCE = 60.0
 
 
 def processes(**fields: Any) -> pl.Executor:
@@ -75,12 +74,7 @@ def environment(job: Job, say: Say) -> dict[str, str]:
 def press(job: Job, say: Say) -> Any:
     """Return the pressures of a small run."""
     result = pl.run(
-        {
-            "grid": {"points": 16 + job.number, "size": "0.5 mm"},
-            "kernel": {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 0.1},
-            "indenter": {"type": "paraboloid", "radius": "1 mm"},
-            "loading": {"depth": "10 um"},
-        },
+        pressing(16 + job.number, "0.5 mm", tensed(1e4, 0.1), paraboloid("1 mm"), depth="10 um"),
         progress=False,
         threads=1,
     )

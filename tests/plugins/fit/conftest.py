@@ -1,7 +1,5 @@
 """What tests of fits share: the command, fits without rivals, and the ends of intervals."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import pytest

@@ -3,8 +3,6 @@
 Each writer takes a `Recording`, what a microscope sees of an approach and a retract.
 """
 
-from __future__ import annotations
-
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from pellicle.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,5 @@
 """What fits answer about curves of known solids: values, intervals, verdicts, flaws."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -14,6 +12,7 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_fit.config import DEFAULT_RIVALS
 from pellicle_fit.estimation.candidate import Candidate
 from pellicle_fit.estimation.intervals import End, Estimate, common_value
@@ -22,7 +21,7 @@ from pellicle_fit.selection.forecast import Means, measurements, telling
 from pellicle_fit.selection.forecast import _foretold as foretold
 from pellicle_fit.selection.verdict import Verdict, decision
 from pellicle_plugins.indenters.of_revolution import Cone, FlatPunch, Paraboloid, Sphere
-from tests.physics.frozen.fit_curves import MODULUS, RADIUS, Array
+from tests.physics.frozen.fit_curves import MODULUS, RADIUS, hertz
 from tests.plugins.fit.conftest import ends_of, holds
 
 TENSION = 0.3 * RADIUS * MODULUS / 2
@@ -449,7 +448,7 @@ def test_of_what_no_model_describes_some_quantities_have_ends(options: Any) -> N
 @pytest.mark.slow
 def test_work_of_adhesion_is_held() -> None:
     """Where the jump stands out of the noise, modulus and work lie within their intervals."""
-    work = 0.1 * float(fit_verdicts.hertz(TOP)) / (1.5 * np.pi * RADIUS)
+    work = 0.1 * float(hertz(TOP)) / (1.5 * np.pi * RADIUS)
     (rows,) = fit_verdicts.rows_of("both", TOP)
     force, held = fit_verdicts.closed_form("adhesion", work_of_adhesion=work)(rows), []
     for seed in range(10):

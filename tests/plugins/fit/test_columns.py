@@ -1,21 +1,20 @@
 """Files as laboratories have them: columns of other names, odd headers, MATLAB, nested HDF5."""
 
-from __future__ import annotations
-
 import re
 import sys
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.io import savemat
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_fit.files.choice import read
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.columns import Calibration
@@ -23,7 +22,6 @@ from pellicle_fit.files.measurement import Measurement
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 
-Array = NDArray[np.float64]
 Z = np.array([1.5, 2.5, 3.5, 4.5])
 """[um]"""
 F = np.array([0.25, 0.5, 1.25, 2.0])
@@ -550,28 +548,26 @@ def test_paths_that_lead_nowhere(tmp_path: Path) -> None:
         readers["curve0003"]()
 
 
-def _plain_mat(path: Path) -> str:
-    savemat(path, {"z": Z[:, None], "f": F})
-    return "z = position um, f = force nN"
+PAIR = {"z": Z, "f": F}
+VARIABLES: dict[str, tuple[dict[str, Any], str, int]] = {
+    "plain": ({"z": Z[:, None], "f": F}, "z = position um, f = force nN", 1),
+    "structure": (
+        {"data": {"raw": PAIR, "who": "me"}},
+        "data.raw.z = position um, data.raw.f = force nN",
+        1,
+    ),
+    "cells": (
+        {"curves": np.array([PAIR, PAIR], dtype=object)},
+        "curves/*/z = position um, curves/*/f = force nN",
+        2,
+    ),
+    "matrix": ({"z": Z, "f": np.column_stack([F, F])}, "z = position um, f = force nN", 2),
+    "new": ({}, "z = position um, f/* = force nN", 2),
+}
+"""Of files of MATLAB, with how they are read and how many curves that is."""
 
 
-def _struct_mat(path: Path) -> str:
-    savemat(path, {"data": {"raw": {"z": Z, "f": F}, "who": "me"}})
-    return "data.raw.z = position um, data.raw.f = force nN"
-
-
-def _struct_array_mat(path: Path) -> str:
-    element = {"z": Z, "f": F}
-    savemat(path, {"curves": np.array([element, element], dtype=object)})
-    return "curves/*/z = position um, curves/*/f = force nN"
-
-
-def _matrix_mat(path: Path) -> str:
-    savemat(path, {"z": Z, "f": np.column_stack([F, F])})
-    return "z = position um, f = force nN"
-
-
-def _new_mat(path: Path) -> str:
+def _new_mat(path: Path) -> None:
     with h5py.File(path, "w", userblock_size=512) as file:
         # MATLAB stores columns of cells as references to arrays with reversed axes.
         cells = file.create_group("#refs#")
@@ -579,17 +575,14 @@ def _new_mat(path: Path) -> str:
         file["z"] = Z[None]
         references = np.array([[cells["a"].ref, cells["b"].ref]], dtype=h5py.ref_dtype)
         file.create_dataset("f", data=references, dtype=h5py.ref_dtype)
-    return "z = position um, f/* = force nN"
 
 
-@pytest.mark.parametrize(
-    ("write", "count"),
-    [(_plain_mat, 1), (_struct_mat, 1), (_struct_array_mat, 2), (_matrix_mat, 2), (_new_mat, 2)],
-)
-def test_matlab(tmp_path: Path, write: Callable[[Path], str], count: int) -> None:
+@pytest.mark.parametrize(("variables", "columns", "count"), VARIABLES.values(), ids=VARIABLES)
+def test_matlab(tmp_path: Path, variables: dict[str, Any], columns: str, count: int) -> None:
     """Variables, structures, cells and matrices of curves are read, from old files and new."""
     path = tmp_path / "measured.mat"
-    read_curves = curves(path, write(path))
+    savemat(path, variables) if variables else _new_mat(path)
+    read_curves = curves(path, columns)
     assert len(read_curves) == count
     assert all(map(is_the_curve, read_curves.values()))
     with pytest.raises(pl.ConfigError, match="; missing: a position"):

@@ -1,7 +1,5 @@
 """Effects against closed forms, as sets, and what the kit says of those that are broken."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Configurations of fits: a TOML file, keyword arguments and options make the same object."""
 
-from __future__ import annotations
-
 import json
 import pickle
 from pathlib import Path
@@ -14,6 +12,7 @@ from jsonschema import Draft202012Validator
 import pellicle as pl
 from pellicle_fit.problem import components_of
 from tests.command import Cli
+from tests.plugins.fit.test_many import save
 
 OPTIONS: dict[str, Any] = {
     "indenter": "sphere",
@@ -43,14 +42,11 @@ FILE = f'{BODY}\n[indenter]\ntype = "sphere"\nradius = "5 um"\n'
 
 def measure(path: Path, radius: float = 5e-6) -> None:
     """Write a curve of a sphere on a solid of 2 kPa under 5 mN/m."""
-    path.parent.mkdir(exist_ok=True)
     depth = np.linspace(-0.3, 1.0, 60) * 0.3 * radius
     sphere = pl.indenter("sphere", radius=radius)
     force = 2e3 * sphere.force_curve(depth, 5e-6).force  # type: ignore[attr-defined]
     force += 0.005 * force.max() * np.random.default_rng(60).standard_normal(60)
-    rows = np.column_stack([depth * 1e6, force * 1e9])
-    header = "position [um],force [nN]"
-    np.savetxt(path, rows, delimiter=",", header=header, comments="", fmt="%.12g")
+    save(path, depth, force)
 
 
 def test_three_ways_make_one_object(tmp_path: Path) -> None:

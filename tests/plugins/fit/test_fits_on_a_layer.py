@@ -1,7 +1,5 @@
 """Fits of curves on a layer that is bonded to a rigid base, of known or of free thickness."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

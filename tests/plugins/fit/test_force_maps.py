@@ -1,7 +1,5 @@
 """Force maps: images of what was fitted, from files that know where curves were measured."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

@@ -1,24 +1,30 @@
-"""Curves from files, the command, and what is said of input that cannot be fitted."""
-
-from __future__ import annotations
+"""Curves from files, the command, and what is said of input that cannot be fitted or is hostile."""
 
 import json
+import os
+import zipfile
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle.arrays import Array
+from pellicle_fit.files.choice import read
 from pellicle_fit.files.cleaning import clean
+from pellicle_fit.files.columns import Calibration
 from pellicle_fit.files.measurement import Measurement
+from pellicle_fit.files.sources import gather
+from pellicle_fit.files.tree import read_tree
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.command import Cli
+from tests.plugins.fit.test_many import save
 
-Array = NDArray[np.float64]
 MODULUS, TENSION, RADIUS, POINT = 5e3, 7.5e-3, 10e-6, 1e-6
+pytestmark = pytest.mark.usefixtures("no_rivals")
 OPTIONS = ("--indenter", "paraboloid", "--radius", "10 um")
 
 
@@ -28,12 +34,6 @@ def _curve(points: int = 300) -> tuple[Array, Array]:
     force = MODULUS * paraboloid.force_curve(depth, 2 * TENSION / MODULUS).force
     noise = np.random.default_rng(4).standard_normal(points)
     return depth + POINT, force + 0.005 * force.max() * noise
-
-
-def _write(position: Array, force: Array) -> None:
-    values = np.column_stack([position * 1e6, force * 1e9])
-    header = "position [um],force [nN]"
-    np.savetxt("curve.csv", values, delimiter=",", header=header, comments="", fmt="%.12g")
 
 
 def _holds(estimate: dict[str, Any], truth: float) -> bool:
@@ -51,7 +51,6 @@ def test_rows_at_the_turn_belong_to_the_pass_that_has_them(dwell: int) -> None:
     assert np.array_equal(clean(Measurement(*both), "retract").force, relaxed)
 
 
-@pytest.mark.usefixtures("no_rivals")
 def test_hdf5_and_depth(cli: Cli) -> None:
     """An HDF5 file with units is read; depth holds the contact point at 0."""
     position, force = _curve()
@@ -65,7 +64,6 @@ def test_hdf5_and_depth(cli: Cli) -> None:
     assert _holds(report["tension"], TENSION)
 
 
-@pytest.mark.usefixtures("no_rivals")
 def test_result_of_a_run_is_a_curve(cli: Cli) -> None:
     """The file that ``pellicle run`` leaves can be fitted as it is."""
     run = pl.Run(
@@ -80,12 +78,11 @@ def test_result_of_a_run_is_a_curve(cli: Cli) -> None:
     assert report["tension"]["value"] == pytest.approx(0.1, rel=0.02)
 
 
-@pytest.mark.usefixtures("no_rivals")
 def test_baseline(cli: Cli) -> None:
     """An offset is pointed out; with offset and slope fitted the truth comes back."""
     position, force = _curve()
     drift = 3e-9 + 2e-3 * (position - position[0])
-    _write(position, force + drift)
+    save(Path("curve.csv"), position, force + drift)
     plain = json.loads(cli("curve.csv", *OPTIONS, "--json").stdout)
     assert "--baseline" in plain["next"][0]["do"]
     report = json.loads(cli("curve.csv", *OPTIONS, "--baseline", "slope", "--json").stdout)
@@ -98,12 +95,11 @@ def test_baseline(cli: Cli) -> None:
         assert _holds({**report["parameters"], **report}[name], truth)
 
 
-@pytest.mark.usefixtures("no_rivals")
 def test_wild_rows_are_left_out(cli: Cli) -> None:
     """Rows without a number, and the way back, are left out and counted."""
     position, force = _curve()
     force[::10] = np.nan
-    _write(np.append(position, position[::-1]), np.append(force, force[::-1]))
+    save(Path("curve.csv"), np.append(position, position[::-1]), np.append(force, force[::-1]))
     report = json.loads(cli("curve.csv", *OPTIONS, "--json").stdout)
     assert report["curves"][0]["points"] == pytest.approx(270, abs=2)
     assert any("60 of 600 rows hold no finite number" in message for message in report["messages"])
@@ -111,7 +107,6 @@ def test_wild_rows_are_left_out(cli: Cli) -> None:
     assert _holds(report["tension"], TENSION)
 
 
-@pytest.mark.usefixtures("no_rivals")
 def test_ten_points() -> None:
     """Ten points are fitted, with an interval as wide as an unseen tension makes it."""
     position, force = _curve(10)
@@ -120,7 +115,6 @@ def test_ten_points() -> None:
     assert _holds(vars(fit.if_present["reduced_modulus"]), MODULUS)
 
 
-@pytest.mark.usefixtures("no_rivals")
 @pytest.mark.parametrize("indenter", ["paraboloid", "sphere"])
 def test_wrong_radius_is_noticed(indenter: str) -> None:
     """A radius smaller by a thousand is doubted; the contact of a sphere ends at its equator."""
@@ -158,7 +152,6 @@ def test_bad_curves(words: str, change: Callable[[Array, Array], tuple[Array, Ar
         clean(Measurement(*change(*_curve())))
 
 
-@pytest.mark.usefixtures("no_rivals")
 def test_retract_on_request() -> None:
     """A retract is fitted if asked for, with a caution."""
     position, force = _curve()
@@ -168,3 +161,82 @@ def test_retract_on_request() -> None:
     assert any("adhered" in message for message in fit.messages)
     with pytest.raises(pl.ConfigError, match="into the solid: this is an approach, and"):
         pl.fit(position, force, **options)
+
+
+def test_each_folder_of_a_tree_is_entered_once(tmp_path: Path) -> None:
+    """Forty folders with two ways to each, and all ways back: its curve is read, and soon."""
+    path = tmp_path / "curves.h5"
+    depth, force = np.linspace(0, 1e-6, 20), np.linspace(0, 1e-9, 20)
+    with h5py.File(path, "w") as file:
+        file["depth"], file["force"] = depth, force
+        group = file
+        for _ in range(40):
+            below = group.create_group("a")
+            group["b"] = below
+            below["back"] = file["/"]
+            group = below
+        group["depth"], group["force"] = depth, force
+    curves, heads = read_tree(path, {})[:2]
+    assert len(curves) == 1
+    assert len(heads) == 4
+
+
+def _linked(file: h5py.File) -> None:
+    file["force"] = h5py.SoftLink("/force")
+
+
+def _typed(file: h5py.File) -> None:
+    file["force"] = np.dtype("f8")
+
+
+def _claiming(file: h5py.File) -> None:
+    file.create_dataset("force", (10**12,), chunks=(1000,), dtype="f8")
+    file.create_dataset("position", (10**12,), chunks=(1000,), dtype="f8")
+
+
+@pytest.mark.parametrize("ending", ["h5", "mat"])
+@pytest.mark.parametrize("fill", [_linked, _typed, _claiming])
+def test_hostile_trees(tmp_path: Path, fill: Callable[[h5py.File], None], ending: str) -> None:
+    """Each is refused in words, without memory for what it claims."""
+    path = tmp_path / f"a.{ending}"
+    with h5py.File(path, "w", userblock_size=512) as file:
+        fill(file)
+        if "position" not in file:
+            file["position"] = np.arange(9.0)
+    with pytest.raises(pl.PellicleError, match=r"a\.(h5|mat)"):
+        [reader() for reader in read(path).values()]
+
+
+def test_a_text_needs_no_more_memory_than_there_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its cells take more than its bytes do."""
+    path = tmp_path / "a.csv"
+    path.write_text("position [um],force [nN]\n" + "1,2\n" * 1000)
+    monkeypatch.setattr("pellicle.memory.available", lambda: 1e6)
+    assert read(path)
+    for limit in (1e5, 1e4):
+        monkeypatch.setattr("pellicle.memory.available", lambda limit=limit: limit)
+        with pytest.raises(pl.ConfigError, match=r"a\.csv as a text needs about"):
+            read(path)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="has no pipes")
+def test_pipes_devices_and_long_names(tmp_path: Path) -> None:
+    """What never ends is not read."""
+    os.mkfifo(tmp_path / "a.csv")
+    (tmp_path / "b.csv").symlink_to("/dev/zero")
+    sources = [*gather(tmp_path, Calibration(), {}), *gather("x" * 300 + ".csv", Calibration(), {})]
+    texts = [str(source.curve) for source in sources]
+    assert ["is a pipe or a device; give a file" in text for text in texts] == [True, True, False]
+    assert "cannot be read" in texts[2]
+
+
+def test_an_archive_without_curves(tmp_path: Path) -> None:
+    """It has folders only."""
+    path = tmp_path / "a.jpk-force"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("segments/", b"")
+        archive.writestr("header.properties", b"")
+    with pytest.raises(pl.StorageError, match="afmformats cannot read it"):
+        read(path, Calibration(spring_constant=1.0, sensitivity=1e-7))

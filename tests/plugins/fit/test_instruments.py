@@ -1,7 +1,5 @@
 """Curves in the formats of instruments, and tables of what a cantilever sees."""
 
-from __future__ import annotations
-
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -10,9 +8,9 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_fit.files.choice import read
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.columns import Calibration
@@ -25,7 +23,6 @@ from tests.plugins.fit.conftest import holds
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 
-Array = NDArray[np.float64]
 MODULUS, LENGTH, RADIUS, SPRING, SENSITIVITY = 5e3, 3e-6, 10e-6, 0.05, 50e-9
 GIVEN = Calibration(spring_constant=SPRING, sensitivity=SENSITIVITY)
 BEAD = Paraboloid(radius=RADIUS)

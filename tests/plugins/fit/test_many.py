@@ -1,7 +1,5 @@
 """Folders and files of many curves: one row each, whatever becomes of the others."""
 
-from __future__ import annotations
-
 import json
 import pickle
 from collections.abc import Callable, Collection, Iterator, Sequence
@@ -11,9 +9,9 @@ from typing import Any, Literal
 import numpy as np
 import pytest
 import xarray as xr
-from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle.components import AnyTask, Executor, Outcome, Report, Say
 from pellicle.plugins.registry import Registry
 from pellicle_fit.many import fit_sources
@@ -26,7 +24,6 @@ from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.command import Cli
 from tests.plugins.fit.conftest import ends_of
 
-Array = NDArray[np.float64]
 MODULUS, LENGTH, RADIUS = 5e3, 3e-6, 10e-6
 HEADER = "position [um],force [nN]"
 OPTIONS = ("-i", "paraboloid", "--radius", "10 um", "--rivals", "none")

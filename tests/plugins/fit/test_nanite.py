@@ -1,7 +1,5 @@
 """The model of docs/nanite, in nanite itself."""
 
-from __future__ import annotations
-
 import warnings
 from importlib import import_module
 from pathlib import Path

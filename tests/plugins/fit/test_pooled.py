@@ -1,22 +1,19 @@
 """One modulus and one tension of several curves."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 import pellicle as pl
+from pellicle.arrays import Array
 from pellicle_fit.words.story import story
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.plugins.fit.conftest import holds
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 
-Array = NDArray[np.float64]
 TRUE_MODULUS, TRUE_TENSION = 2e3, 5e-3
 RADII = (5e-6, 40e-6)
 

@@ -1,7 +1,5 @@
 """Populations: which curves count, their groups, their files, and how they come to harm."""
 
-from __future__ import annotations
-
 import csv
 import json
 import re

@@ -1,7 +1,5 @@
 """Solids that drain in fits: limits, scales, the kernel as the reference, and what fits tell."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

@@ -1,9 +1,8 @@
-"""Force curves of indenters and solids that have no master curve: planned, simulated, kept."""
+"""Force curves without a master curve: planned, simulated, kept; those that lie are refused."""
 
-from __future__ import annotations
-
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -19,6 +18,7 @@ from pellicle_fit.simulated import simulation
 from pellicle_fit.simulated.interpolated import SimulatedCurve
 from pellicle_fit.simulated.simulation import plan, simulated_curve
 from pellicle_fit.simulated.solid import solid
+from pellicle_plugins.indenters.of_revolution import Sphere
 from tests.plugins.fit.conftest import ends_of
 
 LAYER = {"type": "bonded_layer", "thickness": "4 um"}
@@ -183,3 +183,47 @@ def test_what_cannot_be_simulated(tmp_path: Path) -> None:
     body = pl.indenter("self_affine", rms_height=1e-6, hurst=0.8, cutoff_wavelength=1e-6)
     with pytest.raises(pl.ConfigError, match="no force curve of its own"):
         simulated_curve(body, solid("tensed_membrane"), 1e-6, cache=tmp_path)
+
+
+DEPTH = np.linspace(-1e-6, 2e-6, 60)
+FORCE = 1e4 * Sphere(radius=1e-5).force_curve(DEPTH, 1e-7).force
+
+
+def liar(change: Callable[..., Any]) -> Any:
+    """Return a sphere whose force curves are changed, given the depths."""
+
+    class Bead(Sphere):
+        """Sphere with other force curves."""
+
+        type: Literal["liar"] = "liar"  # type: ignore[assignment]
+
+        def force_curve(self, depth: Any, length: float) -> Any:
+            """Return the force curve, changed."""
+            return change(super().force_curve(depth, length), depth)
+
+        def layer_force_curve(self, depth: Any, *solid: float) -> Any:
+            """Return the force curve on a layer, changed."""
+            return change(super().layer_force_curve(depth, *solid), depth)
+
+    return Bead(radius=1e-5)
+
+
+@pytest.mark.parametrize(
+    "solid", [{}, {"thickness": 1e-5, "poissons_ratio": 0.5}], ids=["half-space", "layer"]
+)
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda curve, depth: curve.force,
+        lambda curve, depth: curve._replace(force=curve.force[:-1]),
+        lambda curve, depth: curve._replace(force=curve.force + 0j),
+        lambda curve, depth: curve._replace(force=np.nan * depth),
+    ],
+    ids=["bare", "short", "complex", "NaN"],
+)
+def test_a_force_curve_that_lies_is_refused(
+    change: Callable[..., Any], solid: dict[str, Any]
+) -> None:
+    """No modulus is fitted by a force that is none."""
+    with pytest.raises(pl.PluginError, match="indenter 'liar': its force curve is "):
+        pl.fit(DEPTH, FORCE, indenter=liar(change), rivals=[], **solid)

@@ -1,7 +1,5 @@
 """Sines of a hold: K′ and K″ of made curves, moduli under a tension, and of the kernel."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -21,6 +19,7 @@ from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.measurement import Measurement
 from pellicle_fit.report.tables import sines
 from pellicle_fit.sine import Sine
+from tests.tables_of_runs import half_space, paraboloid, pressing, relaxing
 
 RADIUS, DEPTH, MODULUS = 5e-6, 1e-6, 2e3
 RATE, RAMP, HOLD, GAP, CYCLES = 200.0, 1.0, 2.0, 0.3, 10
@@ -433,11 +432,7 @@ def test_sines_beside_what_is_not_known_are_excused() -> None:
 def test_sines_of_the_kernel(tension: float) -> None:
     """A run that oscillates tells K′ and K″ of the correspondence at a fixed contact."""
     depth, frequency, time = 5e-7, 2.0, 0.05
-    kernel: dict[str, Any] = {
-        "type": "viscoelastic",
-        "solid": {"type": "half_space", "reduced_modulus": MODULUS},
-        "relaxation": [{"fraction": SHARE, "time": time}],
-    }
+    kernel: dict[str, Any] = relaxing(half_space(MODULUS), SHARE, time)
     if tension:
         kernel = {"type": "coated", "tension": tension, "substrate": kernel}
     legs = [
@@ -445,13 +440,9 @@ def test_sines_of_the_kernel(tension: float) -> None:
         {"hold": 1.0, "num": 3},
         {"amplitude": depth / 100, "frequency": frequency, "cycles": 2, "num": 32},
     ]
-    config = {
-        "grid": {"points": 128, "size": 4.5e-6 if not tension else 6e-6},
-        "kernel": kernel,
-        "indenter": {"type": "paraboloid", "radius": RADIUS},
-        "solver": {"type": "active_set", "tolerance": 1e-8},
-        "loading": {"depth": legs},
-    }
+    config = pressing(
+        128, 4.5e-6 if not tension else 6e-6, kernel, paraboloid(RADIUS), depth=legs
+    ) | {"solver": {"type": "active_set", "tolerance": 1e-8}}
     run = pl.run(config, progress=False)
     (response,) = run.oscillations
     solved = response.storage_stiffness + 1j * response.loss_stiffness

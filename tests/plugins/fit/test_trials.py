@@ -1,10 +1,11 @@
-"""Many trials at once are as each on its own: tables, columns of quantities, searches."""
+"""Many trials at once are as each alone: tables, columns, searches; the ends they lead to."""
 
 from __future__ import annotations
 
 import pickle
 from dataclasses import replace
-from typing import Any, Literal, NamedTuple
+from types import SimpleNamespace
+from typing import Any, Literal, NamedTuple, cast
 
 import numpy as np
 import pytest
@@ -15,7 +16,8 @@ import pellicle as pl
 from pellicle_fit.contact.area_table import half_space
 from pellicle_fit.contact.row_splines import RowSplines
 from pellicle_fit.effect import Array, Contact, Effect, Solid
-from pellicle_fit.estimation.search import Ending, descend
+from pellicle_fit.estimation.intervals import End, _Way
+from pellicle_fit.estimation.search import Ending, Minimum, descend
 from pellicle_fit.explanation import Explanation, columns_are_rows
 from tests.plugins.fit.test_effects import Soft, bead
 
@@ -179,3 +181,26 @@ def test_a_search_that_cannot_come_below_its_goal_is_given_up() -> None:
     (one,) = descend(Valley(), STARTS[:1], goal=1.0)
     assert one.ending is Ending.CONVERGED
     assert one.chi_squared < 1e-4
+
+
+def test_end_where_chi_squared_jumps() -> None:
+    """Where two searches find χ² on both sides of the end at one place, that is the end."""
+    quantity = SimpleNamespace(log=False)
+    slot = SimpleNamespace(quantity=quantity, value=lambda at: float(at))
+    objective = SimpleNamespace(slots=[slot], limits=np.array([[-10.0], [10.0]]))
+    at = np.zeros(1)
+
+    def minimum(chi_squared: float) -> Minimum:
+        found = SimpleNamespace(at=at, chi_squared=chi_squared)
+        return cast("Minimum", found)
+
+    way = _Way(cast("Any", objective), minimum(0.0), np.ones((4, 1)), 0, 1, 4.0)
+    here = way.distance
+    way.reached(minimum(100.0))
+    assert way.distance < here
+    # Searches of two starts disagree about one point.
+    way.distance = here
+    way.reached(minimum(0.0))
+    assert way.ended
+    assert way.kind is End.CLOSED
+    assert way.end == pytest.approx(here)

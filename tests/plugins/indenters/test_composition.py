@@ -1,7 +1,5 @@
 """Indenters made of others."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 from math import pi
@@ -12,15 +10,10 @@ import pytest
 
 import pellicle as pl
 from tests.plugins.outputs.shared import bead
+from tests.tables_of_runs import self_affine
 
 SIZE = 1e-3
-ROUGH = {
-    "type": "self_affine",
-    "rms_height": "2 um",
-    "hurst": 0.7,
-    "cutoff_wavelength": "0.2 mm",
-    "seed": 4,
-}
+ROUGH = self_affine("2 um", 0.7, "0.2 mm", seed=4)
 QUADRIC = {"type": "quadric", "radius_x": "1 mm", "radius_y": "4 mm"}
 
 

@@ -1,7 +1,5 @@
 """Files of heights that mark, hide, claim or lack something: read, or refused in words."""
 
-from __future__ import annotations
-
 import tempfile
 import tracemalloc
 import warnings

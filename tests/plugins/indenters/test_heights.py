@@ -1,7 +1,5 @@
 """Heights from files and arrays."""
 
-from __future__ import annotations
-
 import hashlib
 import pickle
 import tracemalloc

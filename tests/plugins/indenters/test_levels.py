@@ -1,7 +1,5 @@
 """What levelling, filling and cutting leave of a measured surface: the same contact."""
 
-from __future__ import annotations
-
 import tempfile
 import warnings
 from pathlib import Path

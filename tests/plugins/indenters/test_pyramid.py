@@ -1,9 +1,6 @@
 """Pyramids: their profiles, published forces and symmetries."""
 
-from __future__ import annotations
-
 from math import atan, cos, pi
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +8,7 @@ from numpy.typing import NDArray
 
 import pellicle as pl
 from pellicle_plugins.indenters.pyramid import Pyramid
+from tests.tables_of_runs import pressing, tensed
 
 SLOPE, DEPTH = 0.1, 0.1
 POINTS = np.linspace(-2.0, 2.0, 21)
@@ -50,17 +48,10 @@ def test_the_angle_of_the_edges(sides: int) -> None:
 def force(sides: int, points: int, angle: float = 0.0, ratio: float = 0.0) -> float:
     """Return P tan α / E*δ² at a ratio sc/δ."""
     pyramid = {"type": "pyramid", "half_angle": atan(1 / SLOPE), "sides": sides}
-    run: dict[str, Any] = {
-        "grid": {"points": points, "size": 3.2 if ratio <= 1 else 1.7},
-        "kernel": {
-            "type": "tensed_membrane",
-            "reduced_modulus": 1.0,
-            "tension": ratio / 2 * DEPTH / SLOPE,
-        },
-        "indenter": {"type": "rotated", "part": pyramid, "angle": angle},
-        "loading": {"depth": DEPTH},
-    }
-    return float(pl.run(run).dataset["force"][-1]) * SLOPE / DEPTH**2
+    rotated = {"type": "rotated", "part": pyramid, "angle": angle}
+    size, skin = 3.2 if ratio <= 1 else 1.7, tensed(1.0, ratio / 2 * DEPTH / SLOPE)
+    data = pl.run(pressing(points, size, skin, rotated, depth=DEPTH)).dataset
+    return float(data["force"][-1]) * SLOPE / DEPTH**2
 
 
 def test_four_sides_are_those_of_bilodeau() -> None:

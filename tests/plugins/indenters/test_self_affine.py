@@ -1,7 +1,5 @@
 """The self-affine surface: one surface at every resolution, with the spectrum that it promises."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

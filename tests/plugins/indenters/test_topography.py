@@ -4,8 +4,6 @@
 39 × 33 points on 1.3 mm × 1.1 mm; the second lacks 7 points. tests/data/patch.py makes them.
 """
 
-from __future__ import annotations
-
 import io
 import pickle
 import runpy
@@ -21,6 +19,7 @@ import pytest
 import pellicle as pl
 from pellicle import memory
 from pellicle_plugins.indenters.text_table import read_tables
+from tests.tables_of_runs import pressing, tensed
 
 ROOT = Path(__file__).parents[3]
 DATA = ROOT / "tests/data"
@@ -145,16 +144,11 @@ def test_rough_run_under_tension_converges() -> None:
 
     A warning says that a scan is not periodic.
     """
+    scan, skin = {"type": "topography", "path": str(X3P), "fill": 0.01}, tensed(1e4, "20 mN/m")
+    more: dict[str, Any] = {"boundary": "periodic", "mean_pressure": "30 Pa"}
+    run = pressing([39, 33], ["1.3 mm", "1.1 mm"], skin, scan, **more)
     with pytest.warns(UserWarning, match="not periodic along [xy]"):
-        result = pl.run(
-            {
-                "grid": {"points": [39, 33], "size": ["1.3 mm", "1.1 mm"], "boundary": "periodic"},
-                "kernel": {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": "20 mN/m"},
-                "indenter": {"type": "topography", "path": str(X3P), "fill": 0.01},
-                "loading": {"mean_pressure": "30 Pa"},
-            },
-            progress=False,
-        )
+        result = pl.run(run, progress=False)
     assert result.converged
     assert ", SurfaceTopography " in result.dataset.attrs["versions"]
     data = result.dataset.isel(step=0)

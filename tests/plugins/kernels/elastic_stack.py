@@ -4,8 +4,6 @@ As it stands this method loses all digits (Thomson 1950, Haskell 1953); with eno
 independent reference that knows nothing of the recursion of the kernel.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from decimal import Decimal, localcontext
 from typing import NamedTuple

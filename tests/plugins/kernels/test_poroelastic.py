@@ -1,7 +1,5 @@
 """The half-space that drains: symbol against Biot's equations in depth, series and fields."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from typing import Any, Literal

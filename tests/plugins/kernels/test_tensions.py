@@ -9,6 +9,7 @@ import pellicle as pl
 from pellicle import Grid, Problem
 from pellicle.components.calls import solution_of
 from pellicle.surface import operator_of
+from tests.tables_of_runs import half_space, pressing, relaxing, self_affine
 
 T = (0.02, 0.08)
 BALL = {"type": "paraboloid", "radius": "1 mm"}
@@ -27,12 +28,7 @@ def coated(tension: Any, **fields: Any) -> Any:
 
 def step(kernel: Any, **parts: Any) -> Any:
     """Return the last step of a sphere that is pressed into a periodic surface."""
-    run = {
-        "grid": {"points": 64, "size": "0.4 mm", "boundary": "periodic"},
-        "kernel": kernel,
-        "indenter": BALL,
-        "loading": {"force": "20 uN"},
-    }
+    run = pressing(64, "0.4 mm", kernel, BALL, boundary="periodic", force="20 uN")
     return pl.run(pl.Run(**run | parts), progress=False).dataset.isel(step=-1)
 
 
@@ -58,13 +54,7 @@ def test_full_contact_with_any_wave(make: Any, bending: dict[str, float], angle:
 
 def test_full_contact_of_a_rough_surface() -> None:
     """In a run: depth, pressure and area are those of the waves."""
-    rough = {
-        "type": "self_affine",
-        "rms_height": "1 um",
-        "hurst": 0.8,
-        "cutoff_wavelength": "50 um",
-        "seed": 1,
-    }
+    rough = self_affine("1 um", 0.8, "50 um", seed=1)
     loading = {"mean_pressure": "3 kPa"}
     data = step(skin(T, angle=0.4), indenter=rough, loading=loading)
     assert data["contact"].all()
@@ -172,11 +162,7 @@ def test_a_free_boundary_a_solid_that_relaxes_and_a_fit_are_refused() -> None:
 
 def test_a_solid_that_relaxes_under_two_tensions() -> None:
     """The skin does not; in the end it carries more than it did."""
-    solid = {
-        "type": "viscoelastic",
-        "solid": {"type": "half_space", "reduced_modulus": 1e4},
-        "relaxation": [{"fraction": 0.9, "time": 1.0}],
-    }
+    solid = relaxing(half_space(1e4), 0.9, 1.0)
     kernel = pl.kernel("coated", tension=T, substrate=solid)
     loading = {"depth": ["5 um", "5 um"], "time": [0.0, 1e6]}
     late = step(kernel, loading=loading)

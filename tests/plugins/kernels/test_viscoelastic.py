@@ -1,7 +1,5 @@
 """Solids that relax: their branches, what a skin on them makes of them, and what is refused."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

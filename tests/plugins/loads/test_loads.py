@@ -1,7 +1,5 @@
 """Loads: sums that are exact, the surface against integrals, invariances, and what is refused."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -16,6 +14,7 @@ from pellicle.components.calls import traction_of
 from pellicle_plugins.loads.round import Disc, Droplet, Ring
 from pellicle_plugins.loads.shares import within_circle
 from pellicle_plugins.validation import discs
+from tests.tables_of_runs import coated, half_space, layer, relaxing
 
 RADIUS = 0.25e-3
 GRID: dict[str, Any] = {"points": 64, "size": 1e-3}
@@ -23,16 +22,7 @@ SKIN = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 0.1}
 SOLIDS: dict[str, dict[str, Any]] = {
     "half_space": {"type": "half_space", "reduced_modulus": 1e4},
     "skin": SKIN,
-    "layer": {
-        "type": "coated",
-        "tension": 0.1,
-        "substrate": {
-            "type": "bonded_layer",
-            "youngs_modulus": 3e3,
-            "poissons_ratio": 0.45,
-            "thickness": 2e-4,
-        },
-    },
+    "layer": coated(layer("bonded_layer", 2e-4, 0.45, youngs_modulus=3e3), 0.1),
 }
 DROPLET = {
     "type": "droplet",
@@ -213,14 +203,9 @@ def test_one_field_varies_over_the_steps() -> None:
 
 def test_a_ridge_grows_in_time() -> None:
     """At a constant load a solid that relaxes sinks from the stiff surface to the soft one."""
-    solid = {"type": "half_space", "reduced_modulus": 1e4}
-    relaxing = {
-        "type": "viscoelastic",
-        "solid": solid,
-        "relaxation": [{"fraction": 0.75, "time": "1 s"}],
-    }
-    drop = DROPLET | {"surface_tension": 0.01}
-    data = solved(drop, relaxing, loading={"time": [0, 0.1, 0.3, 1, 3, 10, 30, 100]}, grid=GRID)
+    solid, drop = half_space(1e4), DROPLET | {"surface_tension": 0.01}
+    times = {"time": [0, 0.1, 0.3, 1, 3, 10, 30, 100]}
+    data = solved(drop, relaxing(solid, 0.75, "1 s"), loading=times, grid=GRID)
     at_once = solved(drop, solid)
     in_the_end = solved(drop, solid | {"reduced_modulus": 2.5e3})
     heights = data["ridge_height"].values

@@ -1,23 +1,18 @@
 """The run whose outputs are looked at, and the tables that they leave."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 from typing import Any
+
+from tests.tables_of_runs import paraboloid, pressing, tensed
 
 PUNCH = {"type": "flat_punch", "radius": "0.1 mm"}
 
 
 def bead(**changes: Any) -> dict[str, Any]:
     """Return a run of two steps under a paraboloid, with some of its tables replaced."""
-    return {
-        "grid": {"points": 16, "size": "0.4 mm"},
-        "kernel": {"type": "tensed_membrane", "reduced_modulus": "10 kPa", "tension": "10 mN/m"},
-        "indenter": {"type": "paraboloid", "radius": "1 mm"},
-        "loading": {"depth": ["5 um", "10 um"]},
-        **changes,
-    }
+    skin, depths = tensed("10 kPa", "10 mN/m"), ["5 um", "10 um"]
+    return pressing(16, "0.4 mm", skin, paraboloid("1 mm"), depth=depths) | changes
 
 
 def rows(path: Path, **which: str) -> list[dict[str, str]]:

@@ -23,6 +23,7 @@ import pellicle as pl
 from pellicle.runs import solve as solving
 from pellicle_plugins.outputs.step_figures import cross_section
 from tests.plugins.outputs.shared import bead
+from tests.tables_of_runs import interrupt, self_affine
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
@@ -201,13 +202,7 @@ def test_the_profile_is_that_of_each_mapped_step(ran: tuple[Path, xr.Dataset]) -
 
 def test_a_rough_contact_has_no_ellipse(tmp_path: Path) -> None:
     """Contact in several parts is told by its fraction of a periodic domain, not by a radius."""
-    rough = {
-        "type": "self_affine",
-        "rms_height": "2 um",
-        "hurst": 0.8,
-        "cutoff_wavelength": "60 um",
-        "roll_off_wavelength": "200 um",
-    }
+    rough = self_affine("2 um", 0.8, "60 um", roll_off_wavelength="200 um")
     grid = {**RUN["grid"], "boundary": "periodic"}
     page = page_of(tmp_path, grid=grid, indenter=rough, loading={"mean_pressure": "5 Pa"})
     (shape,) = page.table("Shape of the contact")
@@ -290,15 +285,7 @@ def test_values_that_are_not_numbers(tmp_path: Path) -> None:
 
 def test_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The page of the steps that are there says that they are not all."""
-    solve, calls = solving.solve_step, []
-
-    def once(*arguments: Any) -> Any:
-        calls.append(arguments)
-        if len(calls) == 2:
-            raise KeyboardInterrupt
-        return solve(*arguments)
-
-    monkeypatch.setattr(solving, "solve_step", once)
+    interrupt(monkeypatch)
     with pytest.raises(KeyboardInterrupt):
         page_of(tmp_path)
     page = Page(tmp_path / "odd.html")

@@ -1,7 +1,5 @@
 """Figures, tables and pages of contacts that stick, along paths with negative depths."""
 
-from __future__ import annotations
-
 import base64
 import json
 import re
@@ -21,6 +19,7 @@ from pellicle.units import Quantity
 from pellicle.variables import VARIABLES, names_of
 from tests.command import call
 from tests.plugins.outputs.shared import rows
+from tests.tables_of_runs import half_space, paraboloid, pressing
 
 # A coarse grid makes pictures in seconds; the units E* = R = w = 1 make slopes steep.
 pytestmark = [
@@ -32,13 +31,9 @@ pytestmark = [
     ),
 ]
 
-BEAD: dict[str, Any] = {
-    "grid": {"points": 24, "size": "5 m"},
-    "kernel": {"type": "half_space", "reduced_modulus": "1 Pa"},
-    "indenter": {"type": "paraboloid", "radius": "1 m"},
-    "interaction": {"type": "jkr", "work_of_adhesion": "1 J/m^2"},
-    "loading": {"depth": {"start": "0.2 m", "stop": "-2.2 m", "num": 5, "back": True}},
-}
+BACK = {"start": "0.2 m", "stop": "-2.2 m", "num": 5, "back": True}
+BEAD = pressing(24, "5 m", half_space("1 Pa"), paraboloid("1 m"), depth=BACK)
+BEAD["interaction"] = {"type": "jkr", "work_of_adhesion": "1 J/m^2"}
 OUTPUTS: list[dict[str, Any]] = [
     {"type": "html"},
     {"type": "vtk"},

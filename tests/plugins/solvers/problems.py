@@ -1,7 +1,5 @@
 """Problems for solvers, and what a solver makes of one."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal

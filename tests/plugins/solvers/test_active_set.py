@@ -5,8 +5,6 @@ length. Operator applications are those on the finest grid. They do not depend o
 for round-off; each bound stands next to what was measured.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any, Literal
 

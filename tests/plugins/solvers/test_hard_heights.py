@@ -3,8 +3,6 @@
 Operator applications are those on the finest grid; each bound stands next to what was measured.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
