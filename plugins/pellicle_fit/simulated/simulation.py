@@ -1,4 +1,4 @@
-"""Plan, run and cache the study behind the force curve of any indenter on any solid."""
+"""Plan, run and cache the studies behind the force curve of any indenter on any solid."""
 
 from __future__ import annotations
 
@@ -10,21 +10,28 @@ from typing import Any
 
 import numpy as np
 import platformdirs
+import xarray as xr
 
 from pellicle import Grid, Study, results, run_study
 from pellicle.arrays import Array
 from pellicle.components import Executor, Indenter
 from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning
 from pellicle.units import readable
+from pellicle_axisymmetric import force_curve, punch_radius
 
-from .interpolated import SCALE, SimulatedCurve, stretched
+from .equivalent import EquivalentBody
+from .interpolated import RATIOS, SimulatedCurve, tensed
 from .solid import UnitKernel, quantities_of
 
 GRID_POINTS = 64
 _OCTAVES = 6
 """Number of factors of 2 between the deepest and the shallowest node."""
-_RATIOS: Array = SCALE * np.expm1(np.linspace(0, stretched(np.array([30.0]))[0], 11))
-"""Nodes s/w; the spline between them has a relative error of about 1e-4."""
+_TOLERANCE = 1e-4
+"""Of the solver, which errs by less than the cells."""
+_COARSE = 2
+"""Number of the node s/a whose contacts are solved on half the cells as well."""
+_ROOM = 1.35
+"""Edge of the grid over the width of the contact that is expected under a tension."""
 _MARGIN = 1.08
 _MARGIN_OF_LAYERS = 1.9
 """Edge of the grid over the width of the indenter: an incompressible thin layer bulges beside the
@@ -46,10 +53,11 @@ def simulated_curve(
     grid_points: int = GRID_POINTS,
     progress: bool = False,
 ) -> SimulatedCurve:
-    """Return the force curve of an indenter on a solid down to a depth [m], from a study.
+    """Return the force curve of an indenter on a solid down to a depth [m], from two studies.
 
-    The study, of a reduced modulus of 1 Pa, is run here unless the folder ``cache`` has it, the
-    user's own if None; ``grid_points`` are the cells of each grid along x and y.
+    The first is without tension, and tells where contacts under tension end. The studies, of a
+    reduced modulus of 1 Pa, are run here unless the folder ``cache`` has them, the user's own if
+    None; ``grid_points`` are the cells of each grid along x and y.
 
     Raises
     ------
@@ -58,38 +66,58 @@ def simulated_curve(
     ConvergenceError, StorageError
         A run fails, or the folder cannot be used.
     """
-    depths, width, table = plan(indenter, solid, deepest, grid_points)
-    table["study"]["executor"] = {"type": executor} if isinstance(executor, str) else executor
-    study = Study.from_mapping(table)
-    runs = "".join(point.run.identity for point in study.points)
+    depths, halves, plain = plan(indenter, solid, deepest, grid_points)
+    plain["study"]["executor"] = {"type": executor} if isinstance(executor, str) else executor
     folder = Path(cache) if cache else platformdirs.user_cache_path("pellicle")
-    folder = folder / "force-curves" / hashlib.sha256(runs.encode()).hexdigest()[:16]
-    # Once all runs have converged they are deleted, so a table without them is whole.
-    if (folder / "study.h5").exists() and not (folder / "runs").exists():
-        results_table = results.table(folder / "study.h5")
-    else:
+
+    def solved(contacts: dict[str, list[Any]]) -> xr.Dataset:
+        values = {path: np.array(column).tolist() for path, column in contacts.items()}
+        table = plain | {"study": plain["study"] | {"zip": [values]}}
+        return _solved(Study.from_mapping(table), folder / "force-curves", progress)
+
+    boxes = 2 * (_MARGIN_OF_LAYERS if _is_layered(solid) else _MARGIN) * halves
+    rows, coarse = tensed(depths), [grid_points // 2] * tensed(depths).size
+    first = solved(
+        {
+            "loading.depth": [*depths, *rows],
+            "grid.size": [*boxes, *tensed(boxes)],
+            "grid.points": [grid_points] * depths.size + coarse,
+        }
+    )
+    bare, bare_coarse = np.split(first["force"].values.ravel(), [depths.size])
+    curve = SimulatedCurve(EquivalentBody(depths, bare))
+    shares = first["contact_radius"].values.ravel()[: depths.size] / np.sqrt(halves.prod(axis=1))
+    widths = 2 * _ROOM * tensed(shares[:, None] * halves)
+    lengths, count = curve.lengths, rows.size * RATIOS.size
+    pairs = zip(rows.tolist(), lengths.tolist(), strict=True)
+    narrower = np.array([_narrower(curve.body, depth, row) for depth, row in pairs])
+    close = np.minimum(narrower[..., None] * widths[:, None], tensed(boxes)[:, None])
+    tensions = np.append(lengths, lengths[:, _COARSE]) / 2
+    for sizes in (close, np.broadcast_to(tensed(boxes)[:, None], close.shape)):
+        contacts = {
+            "loading.depth": [*np.repeat(rows, RATIOS.size), *rows],
+            f"kernel.{solid.tension}": [*tensions],
+            "grid.size": [*sizes.reshape(-1, 2), *sizes[:, _COARSE]],
+            "grid.points": [grid_points] * count + coarse,
+        }
         try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("error", ConvergenceWarning)
-                results_table = run_study(study, folder, progress=progress)
-        except ConvergenceWarning as warning:
-            raise ConvergenceError(
-                f"the force curve needs the study in {folder}: {warning}; another number of "
-                "grid points may help"
-            ) from None
-        shutil.rmtree(folder / "runs")
-    # Each contact on a grid of its own, and on one of half the cells.
-    forces = results_table["force"].values.reshape(2, depths.size, _RATIOS.size)
-    if not (forces > 0).all():
-        raise ConvergenceError("some contacts of the study carry no force; give more grid points")
-    accuracy = float(np.max(np.abs(forces[1] / forces[0] - 1)))
-    return SimulatedCurve(depths, _RATIOS, width, np.log(forces[0]), accuracy, solid.is_half_space)
+            second = solved(contacts)
+            break
+        except ConvergenceError:
+            # A contact that is wider than that of the body of revolution reaches an edge.
+            if sizes is not close:
+                raise
+    under, under_coarse = np.split(second["force"].values.ravel(), [count])
+    forces = under.reshape(lengths.shape)
+    changes = np.append(bare_coarse / tensed(bare), under_coarse / forces[:, _COARSE]) - 1
+    accuracy = float(np.max(np.abs(changes)))
+    return SimulatedCurve(curve.body, forces, accuracy, solid.is_half_space)
 
 
 def plan(
     indenter: Indenter, solid: UnitKernel, deepest: float, grid_points: int = GRID_POINTS
-) -> tuple[Array, tuple[float, float], dict[str, Any]]:
-    """Return depths of nodes down to one [m], the width of contacts there, and their study."""
+) -> tuple[Array, Array, dict[str, Any]]:
+    """Return depths of nodes down to one [m], `half_widths` there, and a study of no contact."""
     if indenter.footprint != "unbounded":
         raise ConfigError(
             "ends where the grid does, so it has no force curve of its own; give one whose shape "
@@ -99,26 +127,51 @@ def plan(
     # Rounded up, so that curves of about the same depth share a study.
     top = int(np.ceil(np.log2(deepest) - 1e-9))
     depths: Array = 2.0 ** np.arange(top - _OCTAVES, top + 1, dtype=np.float64)
-    halves = np.array([half_widths(indenter, depth) for depth in depths])
-    slope, intercept = np.polyfit(np.log(depths), np.log(halves.prod(axis=1)) / 2, 1)
-    widths = np.exp(intercept + slope * np.log(depths))
-    is_layered = any(quantity.unit == "m" for _, quantity, _ in quantities_of(solid.kernel))
-    boxes = 2 * (_MARGIN_OF_LAYERS if is_layered else _MARGIN) * halves
-    contacts = {
-        "loading.depth": np.repeat(depths, _RATIOS.size).tolist(),
-        f"kernel.{solid.tension}": np.outer(widths, _RATIOS / 2).ravel().tolist(),
-        "grid.size": np.repeat(boxes, _RATIOS.size, axis=0).tolist(),
-    }
     study: dict[str, Any] = {
         "title": f"force curve of {indenter.type_name} on {solid.kernel.type_name}",
         "grid": {"points": grid_points, "size": 1.0},
         "kernel": solid.kernel.model_dump(exclude_none=True),
         "indenter": indenter.model_dump(exclude_none=True),
         "loading": {"depth": 1.0},
+        "solver": {"type": "active_set", "tolerance": _TOLERANCE},
         "outputs": [],
-        "study": {"vary": {"grid.points": [grid_points, grid_points // 2]}, "zip": [contacts]},
+        "study": {},
     }
-    return depths, (float(slope), float(intercept)), study
+    return depths, np.array([half_widths(indenter, depth) for depth in depths]), study
+
+
+def _is_layered(solid: UnitKernel) -> bool:
+    return any(quantity.unit == "m" for _, quantity, _ in quantities_of(solid.kernel))
+
+
+def _narrower(body: EquivalentBody, depth: float, lengths: list[float]) -> list[float]:
+    """Return contact radii of a body at a depth [m] under tensions, over that without."""
+    at = np.array([depth])
+    radii = [punch_radius(force_curve(body, at, s).by_depth, s).radius[0] for s in [0.0, *lengths]]
+    return [float(radius / radii[0]) for radius in radii[1:]]
+
+
+def _solved(study: Study, folder: Path, progress: bool) -> xr.Dataset:
+    """Return the table of a study that has its own place in a folder, where it may be already."""
+    runs = "".join(point.run.identity for point in study.points)
+    folder = folder / hashlib.sha256(runs.encode()).hexdigest()[:16]
+    # Once all runs have converged they are deleted, so a table without them is whole.
+    if (folder / "study.h5").exists() and not (folder / "runs").exists():
+        table = results.table(folder / "study.h5")
+    else:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", ConvergenceWarning)
+                table = run_study(study, folder, progress=progress)
+        except ConvergenceWarning as warning:
+            raise ConvergenceError(
+                f"the force curve needs the study in {folder}: {warning}; another number of "
+                "grid points may help"
+            ) from None
+        shutil.rmtree(folder / "runs")
+    if not (table["force"].values > 0).all():
+        raise ConvergenceError("some contacts of the study carry no force; give more grid points")
+    return table
 
 
 def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:
