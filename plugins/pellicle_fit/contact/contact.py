@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, cast
+from typing import Any, Protocol, cast, runtime_checkable
 
 import numpy as np
 
@@ -47,6 +47,16 @@ class OwnArea:
         """Return F/E* [m²] and its derivative by the depth [m]."""
         area, slope = self.areas.slopes(depth / self.height, length / self.width)
         return self.width * self.height * area, self.width * slope
+
+
+@runtime_checkable
+class HasModulus(Protocol):
+    """A body that yields too, so that F/E* depends on the modulus of the solid."""
+
+    modulus: float
+
+    def area(self, deepest: float, size: float, modulus: float) -> Area:
+        """Return F/E* [m²] on a solid of a modulus [Pa], down to a depth [m]."""
 
 
 @lru_cache(maxsize=64)
@@ -97,20 +107,28 @@ class Contact:
         curves share tables.
         """
         deepest = float(10 ** (np.ceil(3 * np.log10(max(deepest, 1e-60))) / 3))
+        if isinstance(indenter, HasModulus):
+            area = indenter.area(deepest, size, modulus)
+        else:
+            reach = min(deepest, indenter.depth_limit)
+            area = OwnArea(half_space(cast("Hashable", indenter), reach), size, size)
         return cls(
             indenter,
             modulus,
-            OwnArea(
-                half_space(cast("Hashable", indenter), min(deepest, indenter.depth_limit)),
-                size,
-                size,
-            ),
+            area,
             size * indenter.depth_limit,
             deepest,
             size=size,
             half_space=getattr(indenter, "half_space", True),
             error=max(1e-6, getattr(indenter, "accuracy", 0.0)),
         )
+
+    def of_modulus(self, modulus: float) -> Contact:
+        """Return the same contact with a solid of another modulus [Pa]."""
+        if isinstance(self.indenter, HasModulus):
+            area = self.indenter.area(self.deepest, self.size, modulus)
+            return replace(self, modulus=modulus, area=area)
+        return replace(self, modulus=modulus)
 
     @cached_property
     def length(self) -> float:

@@ -68,16 +68,15 @@ def simulated_curve(
     """
     depths, halves, plain = plan(indenter, solid, deepest, grid_points)
     plain["study"]["executor"] = {"type": executor} if isinstance(executor, str) else executor
-    folder = Path(cache) if cache else platformdirs.user_cache_path("pellicle")
 
-    def solved(contacts: dict[str, list[Any]]) -> xr.Dataset:
+    def table_of(contacts: dict[str, list[Any]]) -> xr.Dataset:
         values = {path: np.array(column).tolist() for path, column in contacts.items()}
         table = plain | {"study": plain["study"] | {"zip": [values]}}
-        return _solved(Study.from_mapping(table), folder / "force-curves", progress)
+        return solved(Study.from_mapping(table), cache, progress)
 
     boxes = 2 * (_MARGIN_OF_LAYERS if _is_layered(solid) else _MARGIN) * halves
     rows, coarse = tensed(depths), [grid_points // 2] * tensed(depths).size
-    first = solved(
+    first = table_of(
         {
             "loading.depth": [*depths, *rows],
             "grid.size": [*boxes, *tensed(boxes)],
@@ -101,7 +100,7 @@ def simulated_curve(
             "grid.points": [grid_points] * count + coarse,
         }
         try:
-            second = solved(contacts)
+            second = table_of(contacts)
             break
         except ConvergenceError:
             # A contact that is wider than that of the body of revolution reaches an edge.
@@ -151,10 +150,11 @@ def _narrower(body: EquivalentBody, depth: float, lengths: list[float]) -> list[
     return [float(radius / radii[0]) for radius in radii[1:]]
 
 
-def _solved(study: Study, folder: Path, progress: bool) -> xr.Dataset:
-    """Return the table of a study that has its own place in a folder, where it may be already."""
+def solved(study: Study, cache: str | Path | None, progress: bool) -> xr.Dataset:
+    """Return the table of a study that has a place of its own in a folder, and may be there."""
     runs = "".join(point.run.identity for point in study.points)
-    folder = folder / hashlib.sha256(runs.encode()).hexdigest()[:16]
+    folder = Path(cache) if cache else platformdirs.user_cache_path("pellicle")
+    folder = folder / "force-curves" / hashlib.sha256(runs.encode()).hexdigest()[:16]
     # Once all runs have converged they are deleted, so a table without them is whole.
     if (folder / "study.h5").exists() and not (folder / "runs").exists():
         table = results.table(folder / "study.h5")
