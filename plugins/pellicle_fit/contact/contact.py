@@ -69,6 +69,13 @@ def _own_radius(indenter: Any) -> float:
     return radius if np.isclose(area, hertz, rtol=0.01, atol=0) else 0.0
 
 
+def _area(indenter: HasForceCurve, deepest: float, size: float, modulus: float) -> Area:
+    if isinstance(indenter, HasModulus):
+        return indenter.area(deepest, size, modulus)
+    reach = min(deepest, indenter.depth_limit)
+    return OwnArea(half_space(cast("Hashable", indenter), reach), size, size)
+
+
 @dataclass(frozen=True)
 class Contact:
     """Rigid indenter on an elastic solid under tension: F = E* A(δ, s) with s = 2τ₀/E*.
@@ -107,15 +114,10 @@ class Contact:
         curves share tables.
         """
         deepest = float(10 ** (np.ceil(3 * np.log10(max(deepest, 1e-60))) / 3))
-        if isinstance(indenter, HasModulus):
-            area = indenter.area(deepest, size, modulus)
-        else:
-            reach = min(deepest, indenter.depth_limit)
-            area = OwnArea(half_space(cast("Hashable", indenter), reach), size, size)
         return cls(
             indenter,
             modulus,
-            area,
+            _area(indenter, deepest, size, modulus),
             size * indenter.depth_limit,
             deepest,
             size=size,
@@ -125,10 +127,8 @@ class Contact:
 
     def of_modulus(self, modulus: float) -> Contact:
         """Return the same contact with a solid of another modulus [Pa]."""
-        if isinstance(self.indenter, HasModulus):
-            area = self.indenter.area(self.deepest, self.size, modulus)
-            return replace(self, modulus=modulus, area=area)
-        return replace(self, modulus=modulus)
+        area = _area(self.indenter, self.deepest, self.size, modulus)
+        return replace(self, modulus=modulus, area=area)
 
     @cached_property
     def length(self) -> float:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from pellicle import Study, registry
-from pellicle.components import Executor, HasForceCurve, Indenter, Kernel
+from pellicle import registry
+from pellicle.components import HasForceCurve, Indenter, Kernel
 from pellicle.errors import ConfigError, problems_within
 from pellicle_fit.contact.soft_bead import SoftBead
 
@@ -47,15 +46,13 @@ def soft_bead(
     deepest: float,
     *,
     skins: bool,
-    cache: str | Path | None = None,
-    executor: str | Executor = "serial",
     grid_points: int = GRID_POINTS,
-    progress: bool = False,
+    **options: Any,
 ) -> SoftBead:
     """Return a bead of a reduced modulus [Pa] and a tension [N/m] down to a depth [m].
 
-    If it or the sample may have ``skins``, pairs of both are simulated; for the rest see
-    `simulated_curve`.
+    If it or the sample may have ``skins``, pairs of both are simulated; ``options`` are those of
+    `solved`.
     """
     if not (isinstance(rigid, Indenter) and isinstance(rigid, HasForceCurve) and rigid.depth_limit):
         raise ConfigError("has no force curve of its own; a bead that yields needs one", "indenter")
@@ -65,7 +62,7 @@ def soft_bead(
     body = {"type": _SKIN, "reduced_modulus": 1.0, "tension": 0.0}
     kernel = registry().make(Kernel, {"type": "pair", "first": body, "second": body})
     pair = UnitKernel(kernel, "first.tension", None)
-    depths, halves, plain = plan(rigid, pair, deepest, grid_points)
+    depths, halves, study = plan(rigid, pair, deepest, grid_points)
     rows = tensed(depths)
     lengths, _, softer = bead.nodes(rows)
     parts = (rows[:, None, None], lengths, 1 / softer)
@@ -83,10 +80,7 @@ def soft_bead(
         "grid.size": boxes[chosen],
         "grid.points": np.array(points),
     }
-    study = {"zip": [{path: column.tolist() for path, column in contacts.items()}]}
-    executed = {"type": executor} if isinstance(executor, str) else executor
-    table = plain | {"study": study | {"executor": executed}}
-    forces = solved(Study.from_mapping(table), cache, progress)["force"].values.ravel()
+    forces = solved(study, contacts, **options)["force"].values.ravel()
     accuracy = float(np.max(np.abs(forces[depth.size :] / forces[middle] - 1)))
     return replace(
         bead, depths=rows, forces=forces[: depth.size].reshape(softer.shape), accuracy=accuracy

@@ -5,21 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
-from typing import TYPE_CHECKING, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from pellicle.arrays import Array
 
-if TYPE_CHECKING:
-    from scipy.interpolate import CubicSpline, PchipInterpolator
-
-_POINTS = 8
-"""Points of the transform for each depth."""
-_RISE = 1e-3
-"""Least rise of the logarithm of the radius between two of them."""
+_POINTS, _RISE = 8, 1e-3
+"""Points of h for each depth, and the least rise of the logarithm of the radius between two."""
 _POWERS = 0.5, 4.0
-"""Least and greatest power of the radius with which the transform grows beyond its ends."""
+"""Least and greatest power of the radius with which h grows beyond its ends."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,14 +48,14 @@ class EquivalentBody:
         return value / x * power
 
     @cached_property
-    def _spline(self) -> CubicSpline:
+    def _spline(self) -> Any:
         from scipy.interpolate import CubicSpline
 
         return CubicSpline(np.log(self.depths), np.log(self.forces))
 
     @cached_property
-    def _log_transform(self) -> tuple[PchipInterpolator, PchipInterpolator]:
-        """Log h over log x, increasing, and its derivative."""
+    def _log_transform(self) -> Any:
+        """Log h over log x, increasing."""
         from scipy.interpolate import PchipInterpolator
 
         first, last = np.log(self.depths[[0, -1]])
@@ -68,13 +63,12 @@ class EquivalentBody:
         force, slope, _ = self.log_force(log_depth)
         log_radius = np.log(slope / 2) + force - log_depth
         grows = np.diff(np.maximum.accumulate(log_radius), prepend=-inf) > _RISE
-        spline = PchipInterpolator(log_radius[grows], log_depth[grows])
-        return spline, spline.derivative()
+        return PchipInterpolator(log_radius[grows], log_depth[grows])
 
     def _transform(self, x: Array) -> tuple[Array, Array]:
         """Return h(x) [m], and the power of x with which it grows."""
-        spline, rate = self._log_transform
-        log = np.log(x)
+        spline, log = self._log_transform, np.log(x)
         inside = np.clip(log, *spline.x[[0, -1]])
-        power = np.where(inside == log, rate(inside), np.clip(rate(inside), *_POWERS))
+        power = spline(inside, 1)
+        power = np.where(inside == log, power, np.clip(power, *_POWERS))
         return np.exp(spline(inside) + power * (log - inside)), power

@@ -10,16 +10,13 @@ from numpy.polynomial.chebyshev import chebder, chebval2d, chebvander
 
 from pellicle.arrays import Array
 from pellicle.components import ForceCurve
-from pellicle_axisymmetric import force_curve
+from pellicle_axisymmetric import force_curve, punch_radius
 
 from .equivalent import EquivalentBody
 
 RATIOS: Array = np.array([0.05, 0.25, 1.2, 5.0, 24.0])
 """Nodes x = s/a under tension, a = ¾ F₀/δ."""
-_SCALE = 1.0
 _LEAST_DEPTH = 1e-60
-
-
 _DEPTHS = 3
 
 
@@ -53,26 +50,29 @@ class SimulatedCurve:
         """Depth [m] of the deepest node."""
         return float(self.body.depths[-1])
 
-    @property
-    def lengths(self) -> Array:
-        """Elastocapillary lengths s [m] of the nodes under tension, of shape (k, n)."""
+    @cached_property
+    def nodes(self) -> tuple[Array, Array, Array]:
+        """Return s [m], and force over F₀ and contact radius over a₀ of the body, at `RATIOS`."""
         depths = tensed(self.body.depths)
-        return np.outer(self.body.log_force(np.log(depths))[2], RATIOS)
+        lengths = np.outer(self.body.log_force(np.log(depths))[2], RATIOS)
+        values = np.empty((2, depths.size, RATIOS.size + 1))
+        for i, row in enumerate(lengths.tolist()):
+            for j, s in enumerate([0.0, *row]):
+                of = force_curve(self.body, depths[i : i + 1], s)
+                values[:, i, j] = of.force[0], punch_radius(of.by_depth, s).radius[0]
+        force, radius = values[:, :, 1:] / values[:, :, :1]
+        return lengths, force, radius
 
     @cached_property
     def _left(self) -> Array:
         """Coefficients of what is left."""
         if self.forces is None:
             return np.zeros((2, 2))
-        depths, bare = tensed(self.body.depths), SimulatedCurve(self.body)
-        expected = [
-            [bare.force_curve(depths[i : i + 1], s).force[0] for s in row]
-            for i, row in enumerate(self.lengths.tolist())
-        ]
-        v, (rows, columns) = RATIOS / (RATIOS + _SCALE), self.forces.shape
-        of_depth = chebvander(self._place(np.log(depths))[0], rows - 1)
-        of_ratio = v[:, None] * chebvander(2 * v - 1, columns - 1)
-        left = np.log(self.forces / expected)
+        log_depths = np.log(tensed(self.body.depths))
+        expected = np.exp(self.body.log_force(log_depths)[0])[:, None] * self.nodes[1]
+        left, v = np.log(self.forces / expected), RATIOS / (1 + RATIOS)
+        of_depth = chebvander(self._place(log_depths)[0], len(left) - 1)
+        of_ratio = v[:, None] * chebvander(2 * v - 1, v.size - 1)
         return np.asarray(np.linalg.solve(of_ratio, np.linalg.solve(of_depth, left).T).T)
 
     def _place(self, log_depth: Array) -> tuple[Array, Array]:
@@ -90,13 +90,13 @@ class SimulatedCurve:
         log, slope, radius = self.body.log_force(u)
         bare, under = (force_curve(self.body, d, s) for s in (0.0, length))
         x, left = length / radius, self._left
-        v, (z, z_rate) = x / (x + _SCALE), self._place(u)
+        v, (z, z_rate) = x / (1 + x), self._place(u)
         value, by_z, by_v = (
             chebval2d(z, 2 * v - 1, part)
             for part in (left, chebder(left, axis=0), chebder(left, axis=1))
         )
         force = np.exp(log + v * value) * (under.force / bare.force)
-        by_x = (value + 2 * v * by_v) * _SCALE / (x + _SCALE) ** 2
+        by_x = (value + 2 * v * by_v) / (1 + x) ** 2
         by_depth = slope + v * by_z * z_rate + by_x * x * (1 - slope)
         by_depth = by_depth / d + under.by_depth / under.force - bare.by_depth / bare.force
         out = np.zeros((3, depth.size))

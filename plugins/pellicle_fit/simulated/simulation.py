@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import shutil
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,6 @@ from pellicle.arrays import Array
 from pellicle.components import Executor, Indenter
 from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning
 from pellicle.units import readable
-from pellicle_axisymmetric import force_curve, punch_radius
 
 from .equivalent import EquivalentBody
 from .interpolated import RATIOS, SimulatedCurve, tensed
@@ -30,7 +30,7 @@ _TOLERANCE = 1e-4
 """Of the solver, which errs by less than the cells."""
 _COARSE = 2
 """Number of the node s/a whose contacts are solved on half the cells as well."""
-_ROOM = 1.35
+_ROOM = 1.5
 """Edge of the grid over the width of the contact that is expected under a tension."""
 _MARGIN = 1.08
 _MARGIN_OF_LAYERS = 1.9
@@ -48,16 +48,14 @@ def simulated_curve(
     solid: UnitKernel,
     deepest: float,
     *,
-    cache: str | Path | None = None,
-    executor: str | Executor = "serial",
     grid_points: int = GRID_POINTS,
-    progress: bool = False,
+    **options: Any,
 ) -> SimulatedCurve:
     """Return the force curve of an indenter on a solid down to a depth [m], from two studies.
 
-    The first is without tension, and tells where contacts under tension end. The studies, of a
-    reduced modulus of 1 Pa, are run here unless the folder ``cache`` has them, the user's own if
-    None; ``grid_points`` are the cells of each grid along x and y.
+    The first is without tension, and tells where contacts under tension end; both are of a reduced
+    modulus of 1 Pa. ``grid_points`` are the cells of each grid along x and y. The ``options`` are
+    ``executor``, ``progress``, and the folder ``cache`` that keeps studies, the user's own if None.
 
     Raises
     ------
@@ -66,51 +64,36 @@ def simulated_curve(
     ConvergenceError, StorageError
         A run fails, or the folder cannot be used.
     """
-    depths, halves, plain = plan(indenter, solid, deepest, grid_points)
-    plain["study"]["executor"] = {"type": executor} if isinstance(executor, str) else executor
-
-    def table_of(contacts: dict[str, list[Any]]) -> xr.Dataset:
-        values = {path: np.array(column).tolist() for path, column in contacts.items()}
-        table = plain | {"study": plain["study"] | {"zip": [values]}}
-        return solved(Study.from_mapping(table), cache, progress)
-
-    boxes = 2 * (_MARGIN_OF_LAYERS if _is_layered(solid) else _MARGIN) * halves
-    rows, coarse = tensed(depths), [grid_points // 2] * tensed(depths).size
-    first = table_of(
-        {
-            "loading.depth": [*depths, *rows],
-            "grid.size": [*boxes, *tensed(boxes)],
-            "grid.points": [grid_points] * depths.size + coarse,
-        }
-    )
+    depths, halves, study = plan(indenter, solid, deepest, grid_points)
+    is_layered = any(quantity.unit == "m" for _, quantity, _ in quantities_of(solid.kernel))
+    boxes = 2 * (_MARGIN_OF_LAYERS if is_layered else _MARGIN) * halves
+    rows, fine, coarse = tensed(depths), [grid_points], [grid_points // 2] * tensed(depths).size
+    contacts = {
+        "loading.depth": np.append(depths, rows),
+        "grid.size": np.concatenate([boxes, tensed(boxes)]),
+        "grid.points": np.array(fine * depths.size + coarse),
+    }
+    first = solved(study, contacts, **options)
     bare, bare_coarse = np.split(first["force"].values.ravel(), [depths.size])
     curve = SimulatedCurve(EquivalentBody(depths, bare))
+    lengths, _, narrower = curve.nodes
     shares = first["contact_radius"].values.ravel()[: depths.size] / np.sqrt(halves.prod(axis=1))
-    widths = 2 * _ROOM * tensed(shares[:, None] * halves)
-    lengths, count = curve.lengths, rows.size * RATIOS.size
-    pairs = zip(rows.tolist(), lengths.tolist(), strict=True)
-    narrower = np.array([_narrower(curve.body, depth, row) for depth, row in pairs])
-    close = np.minimum(narrower[..., None] * widths[:, None], tensed(boxes)[:, None])
-    tensions = np.append(lengths, lengths[:, _COARSE]) / 2
-    for sizes in (close, np.broadcast_to(tensed(boxes)[:, None], close.shape)):
-        contacts = {
-            "loading.depth": [*np.repeat(rows, RATIOS.size), *rows],
-            f"kernel.{solid.tension}": [*tensions],
-            "grid.size": [*sizes.reshape(-1, 2), *sizes[:, _COARSE]],
-            "grid.points": [grid_points] * count + coarse,
-        }
-        try:
-            second = table_of(contacts)
-            break
-        except ConvergenceError:
-            # A contact that is wider than that of the body of revolution reaches an edge.
-            if sizes is not close:
-                raise
-    under, under_coarse = np.split(second["force"].values.ravel(), [count])
+    # Under a tension contacts are narrower, about as those of the body; not so on thin layers.
+    narrower = np.ones_like(narrower) if is_layered else narrower
+    widths = 2 * _ROOM * tensed(shares[:, None] * halves)[:, None] * narrower[..., None]
+    sizes = np.minimum(widths, tensed(boxes)[:, None])
+    contacts = {
+        "loading.depth": np.append(np.repeat(rows, RATIOS.size), rows),
+        f"kernel.{solid.tension}": np.append(lengths, lengths[:, _COARSE]) / 2,
+        "grid.size": np.concatenate([sizes.reshape(-1, 2), sizes[:, _COARSE]]),
+        "grid.points": np.array(fine * lengths.size + coarse),
+    }
+    under, coarse_under = np.split(
+        solved(study, contacts, **options)["force"].values.ravel(), [lengths.size]
+    )
     forces = under.reshape(lengths.shape)
-    changes = np.append(bare_coarse / tensed(bare), under_coarse / forces[:, _COARSE]) - 1
-    accuracy = float(np.max(np.abs(changes)))
-    return SimulatedCurve(curve.body, forces, accuracy, solid.is_half_space)
+    changes = np.append(bare_coarse / tensed(bare), coarse_under / forces[:, _COARSE]) - 1
+    return SimulatedCurve(curve.body, forces, float(np.max(np.abs(changes))), solid.is_half_space)
 
 
 def plan(
@@ -134,25 +117,23 @@ def plan(
         "loading": {"depth": 1.0},
         "solver": {"type": "active_set", "tolerance": _TOLERANCE},
         "outputs": [],
-        "study": {},
     }
     return depths, np.array([half_widths(indenter, depth) for depth in depths]), study
 
 
-def _is_layered(solid: UnitKernel) -> bool:
-    return any(quantity.unit == "m" for _, quantity, _ in quantities_of(solid.kernel))
-
-
-def _narrower(body: EquivalentBody, depth: float, lengths: list[float]) -> list[float]:
-    """Return contact radii of a body at a depth [m] under tensions, over that without."""
-    at = np.array([depth])
-    radii = [punch_radius(force_curve(body, at, s).by_depth, s).radius[0] for s in [0.0, *lengths]]
-    return [float(radius / radii[0]) for radius in radii[1:]]
-
-
-def solved(study: Study, cache: str | Path | None, progress: bool) -> xr.Dataset:
-    """Return the table of a study that has a place of its own in a folder, and may be there."""
-    runs = "".join(point.run.identity for point in study.points)
+def solved(
+    study: Mapping[str, Any],
+    contacts: Mapping[str, Array],
+    *,
+    executor: str | Executor = "serial",
+    cache: str | Path | None = None,
+    progress: bool = False,
+) -> xr.Dataset:
+    """Return the table of a study of some contacts, from a place of its own if it is there."""
+    columns = {path: column.tolist() for path, column in contacts.items()}
+    by = {"type": executor} if isinstance(executor, str) else executor
+    whole = Study.from_mapping({**study, "study": {"zip": [columns], "executor": by}})
+    runs = "".join(point.run.identity for point in whole.points)
     folder = Path(cache) if cache else platformdirs.user_cache_path("pellicle")
     folder = folder / "force-curves" / hashlib.sha256(runs.encode()).hexdigest()[:16]
     # Once all runs have converged they are deleted, so a table without them is whole.
@@ -162,7 +143,7 @@ def solved(study: Study, cache: str | Path | None, progress: bool) -> xr.Dataset
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("error", ConvergenceWarning)
-                table = run_study(study, folder, progress=progress)
+                table = run_study(whole, folder, progress=progress)
         except ConvergenceWarning as warning:
             raise ConvergenceError(
                 f"the force curve needs the study in {folder}: {warning}; another number of "

@@ -47,7 +47,7 @@ def exact_nodes() -> SimulatedCurve:
     forces = np.array(
         [
             [sphere.force_curve(np.array([depth]), s).force[0] for s in lengths]
-            for depth, lengths in zip(tensed(depths), SimulatedCurve(body).lengths, strict=True)
+            for depth, lengths in zip(tensed(depths), SimulatedCurve(body).nodes[0], strict=True)
         ]
     )
     return SimulatedCurve(body, forces, 0.01, half_space=False)
