@@ -11,6 +11,7 @@ from .adhesive_contact import punch_pull_off as punch_pull_off
 from .arguments import positive as positive
 from .arguments import single as single
 from .body import BodyOfRevolution as BodyOfRevolution
+from .depth_curves import force_curve as force_curve
 from .depth_curves import spread as spread
 from .depth_curves import stretched as stretched
 from .depth_curves import touching as touching

@@ -49,6 +49,7 @@ from .files.measurement import Segment
 from .files.missing import OPTIONS, MissingInputError
 from .files.sources import PLACE, Curves, Source, expanded, gather
 from .population.judgement import Rule
+from .simulated.bead import constants_of
 from .simulated.simulation import GRID_POINTS
 from .simulated.solid import solid
 
@@ -101,6 +102,11 @@ class FitConfig(FromFile, Calibration):
         None,
         description="of a layer bonded to a rigid base, in place of a half-space; "
         '"free" fits it. It needs poissons_ratio',
+    )
+    bead: dict[str, Any] | None = Field(
+        None,
+        description="modulus and tension of an indenter that yields too: youngs_modulus, or "
+        "reduced_modulus, poissons_ratio if it is not that of the solid, tension",
     )
     model: Annotated[tuple[_OneEffect, ...], list_or_entry(_Effects)] = Field(
         ("tension",),
@@ -218,6 +224,15 @@ class FitConfig(FromFile, Calibration):
             raise ConfigError("is that of sines; give their frequencies, or leave it out", "lag")
         if self.kernel is not None:
             solid(self.kernel, self.poissons_ratio)
+        if self.bead is not None:
+            constants_of(self.bead, self.poissons_ratio)
+            for name in ("kernel", "thickness", "frequencies"):
+                if getattr(self, name):
+                    reason = "a bead that yields is fitted on a half-space, without sines"
+                    raise ConfigError(f"{reason}; leave out {name} or bead", "bead")
+            if "radius" in self.uncertainty:
+                reason = "of a bead that yields is taken as exact; leave it out"
+                raise ConfigError(reason, "uncertainty.radius")
         return self
 
     @classmethod

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple, TypeVar
 
@@ -13,7 +13,7 @@ from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
 
 from .balance import DIFFERENCE, balanced
-from .contact.contact import Contact
+from .contact.contact import Contact, HasModulus
 from .contact.curve import Curve
 from .effect import (
     Adds,
@@ -75,7 +75,7 @@ class Explanation:
 
     def contact(self, curve: Curve) -> Contact:
         """Return the contact of the curve's indenter, of known quantities."""
-        contact = replace(curve.contact, modulus=self.solid.reduced_modulus)
+        contact = curve.contact.of_modulus(self.solid.reduced_modulus)
         for effect in self.of(Bends):
             contact = effect.contact(contact)
         return contact
@@ -92,6 +92,8 @@ class Explanation:
             return "nothing may be in series with what balances the cantilever itself"
         for curve in curves:
             contact, sizes = curve.contact, Sizes.of_curve(curve)
+            if responds and isinstance(contact.indenter, HasModulus):
+                return "a bead that yields does not relax with the solid"
             one = np.ones(1)
             if curve.sines and any(
                 effect.known(sizes).complex_modulus(one, one, 0.0) is None for effect in responds

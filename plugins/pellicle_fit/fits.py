@@ -35,8 +35,8 @@ def fit(
     95 %.
 
     An indenter that has a force curve of its own (a body of revolution, a sharp pyramid) is fitted
-    at once.  Any other indenter, or any on another kernel, first needs a study of some 150 runs,
-    which is kept in ``cache`` and serves all curves of about the same depth.
+    at once.  Any other indenter, or any on another kernel, first needs studies of some 30 runs,
+    which are kept in ``cache`` and serve all curves of about the same depth.
 
     Parameters
     ----------

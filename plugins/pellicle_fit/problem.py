@@ -31,6 +31,7 @@ from .selection.advice import advise
 from .selection.calibration import errors
 from .selection.neighbour import Neighbour
 from .selection.recipe import answer
+from .simulated.bead import constants_of, soft_bead
 from .simulated.simulation import simulated_curve
 from .simulated.solid import solid
 
@@ -160,17 +161,27 @@ def _on_solid(
     bodies: list[Any] = []
     for indenter, curve in zip(indenters, measured, strict=True):
         known = isinstance(indenter, HasForceCurve) and indenter.depth_limit > 0
-        if kernel is None and known:
+        if kernel is None and known and config.bead is None:
             bodies.append(indenter)
             continue
         if not isinstance(indenter, Indenter):
             reason = "cannot be given with a force curve, which includes its solid"
             raise ConfigError(reason, "kernel")
-        of = solid(kernel or "tensed_membrane", config.poissons_ratio)
-        ratio, deepest = of.poissons_ratio, float(curve.position.max())
+        deepest = float(curve.position.max())
         reach = _REACH * float(np.ptp(curve.position)) if point is None else deepest - point
         options = {name: getattr(config, name) for name in ("cache", "executor", "grid_points")}
-        bodies.append(simulated_curve(indenter, of, reach, **options, progress=progress))
+        options["progress"] = progress
+        if config.bead is not None:
+            modulus, tension = constants_of(config.bead, ratio)
+            may = config.fix.get("tension") != 0 and any(
+                effect.type_name == "tension" for effect in (*config.model, *chain(*config.rivals))
+            )
+            skins = tension > 0 or may
+            bodies.append(soft_bead(indenter, modulus, tension, reach, skins=skins, **options))
+            continue
+        of = solid(kernel or "tensed_membrane", config.poissons_ratio)
+        ratio = of.poissons_ratio
+        bodies.append(simulated_curve(indenter, of, reach, **options))
     return bodies, [], ratio
 
 

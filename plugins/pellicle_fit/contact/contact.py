@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, cast
+from typing import Any, Protocol, cast, runtime_checkable
 
 import numpy as np
 
@@ -49,6 +49,16 @@ class OwnArea:
         return self.width * self.height * area, self.width * slope
 
 
+@runtime_checkable
+class HasModulus(Protocol):
+    """A body that yields too, so that F/E* depends on the modulus of the solid."""
+
+    modulus: float
+
+    def area(self, deepest: float, size: float, modulus: float) -> Area:
+        """Return F/E* [m²] on a solid of a modulus [Pa], down to a depth [m]."""
+
+
 @lru_cache(maxsize=64)
 def _own_radius(indenter: Any) -> float:
     radius = float(getattr(indenter, "radius", 0.0))
@@ -57,6 +67,13 @@ def _own_radius(indenter: Any) -> float:
     area = indenter.force_curve(np.array([_SHALLOW * radius]), 0.0).force[0]
     hertz = 4 / 3 * _SHALLOW**1.5 * radius**2
     return radius if np.isclose(area, hertz, rtol=0.01, atol=0) else 0.0
+
+
+def _area(indenter: HasForceCurve, deepest: float, size: float, modulus: float) -> Area:
+    if isinstance(indenter, HasModulus):
+        return indenter.area(deepest, size, modulus)
+    reach = min(deepest, indenter.depth_limit)
+    return OwnArea(half_space(cast("Hashable", indenter), reach), size, size)
 
 
 @dataclass(frozen=True)
@@ -100,17 +117,18 @@ class Contact:
         return cls(
             indenter,
             modulus,
-            OwnArea(
-                half_space(cast("Hashable", indenter), min(deepest, indenter.depth_limit)),
-                size,
-                size,
-            ),
+            _area(indenter, deepest, size, modulus),
             size * indenter.depth_limit,
             deepest,
             size=size,
             half_space=getattr(indenter, "half_space", True),
             error=max(1e-6, getattr(indenter, "accuracy", 0.0)),
         )
+
+    def of_modulus(self, modulus: float) -> Contact:
+        """Return the same contact with a solid of another modulus [Pa]."""
+        area = _area(self.indenter, self.deepest, self.size, modulus)
+        return replace(self, modulus=modulus, area=area)
 
     @cached_property
     def length(self) -> float:

@@ -6,70 +6,101 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import RectBivariateSpline
+from numpy.polynomial.chebyshev import chebder, chebval2d, chebvander
 
 from pellicle.arrays import Array
 from pellicle.components import ForceCurve
+from pellicle_axisymmetric import force_curve, punch_radius
 
-SCALE = 0.1
-"""Ratio of s to contact width at which the spacing of nodes turns from uniform to logarithmic."""
+from .equivalent import EquivalentBody
+
+RATIOS: Array = np.array([0.05, 0.25, 1.2, 5.0, 24.0])
+"""Nodes x = s/a under tension, a = ¾ F₀/δ."""
+_LEAST_DEPTH = 1e-60
+_DEPTHS = 3
 
 
-def stretched(x: Array) -> Array:
-    """Return log(1 + x/SCALE), on which log F is smooth from no tension to tension alone."""
-    return np.log1p(x / SCALE)
+def tensed(values: Array) -> Array:
+    """Return those at the depths where a tension acts as well: three of every second, to the last.
+
+    At shallower ones what is left changes little, and less of the force depends on it.
+    """
+    return values[::-2][:_DEPTHS][::-1]
 
 
 @dataclass(frozen=True, eq=False)
 class SimulatedCurve:
-    """F/E* of an indenter on a solid under tension, interpolated between the runs of a study.
+    """F/E* of an indenter on a solid under tension, interpolated between simulated contacts.
 
-    log(F/E*) is a cubic spline of log δ and of `stretched` s/w; beyond the nodes it is extrapolated
-    linearly.
+    A tension acts about as on the body of revolution with the same force without tension. The
+    logarithm of what is left is 0 without tension, a polynomial of log δ and of x/(1 + x).
     """
 
-    depths: Array
-    """Depths δ of nodes [m], increasing, of shape (m,)."""
-    ratios: Array
-    """Ratios s/w of nodes, increasing from 0, of shape (n,)."""
-    width: tuple[float, float]
-    """Slope of log w over log δ, and its value at δ = 1 m; w is about the width of the contact."""
-    log_forces: Array
-    """log(F/E*) in m², of shape (m, n)."""
+    body: EquivalentBody
+    """The body, with the nodes of the depth."""
+    forces: Array | None = None
+    """F/E* [m²] under tension at `tensed` depths and the nodes of x, of shape (k, n)."""
     accuracy: float = 0.0
-    """Largest relative change of a force when the cells along each axis are halved."""
+    """Largest relative change of some forces when the cells along each axis are halved."""
     half_space: bool = True
     """Whether the solid under the skin is one."""
 
     @property
     def depth_limit(self) -> float:
         """Depth [m] of the deepest node."""
-        return float(self.depths[-1])
+        return float(self.body.depths[-1])
 
     @cached_property
-    def _spline(self) -> RectBivariateSpline:
-        return RectBivariateSpline(np.log(self.depths), stretched(self.ratios), self.log_forces)
+    def nodes(self) -> tuple[Array, Array, Array]:
+        """Return s [m], and force over F₀ and contact radius over a₀ of the body, at `RATIOS`."""
+        depths = tensed(self.body.depths)
+        lengths = np.outer(self.body.log_force(np.log(depths))[2], RATIOS)
+        values = np.empty((2, depths.size, RATIOS.size + 1))
+        for i, row in enumerate(lengths.tolist()):
+            for j, s in enumerate([0.0, *row]):
+                of = force_curve(self.body, depths[i : i + 1], s)
+                values[:, i, j] = of.force[0], punch_radius(of.by_depth, s).radius[0]
+        force, radius = values[:, :, 1:] / values[:, :, :1]
+        return lengths, force, radius
+
+    @cached_property
+    def _left(self) -> Array:
+        """Coefficients of what is left."""
+        if self.forces is None:
+            return np.zeros((2, 2))
+        log_depths = np.log(tensed(self.body.depths))
+        expected = np.exp(self.body.log_force(log_depths)[0])[:, None] * self.nodes[1]
+        left, v = np.log(self.forces / expected), RATIOS / (1 + RATIOS)
+        of_depth = chebvander(self._place(log_depths)[0], len(left) - 1)
+        of_ratio = v[:, None] * chebvander(2 * v - 1, v.size - 1)
+        return np.asarray(np.linalg.solve(of_ratio, np.linalg.solve(of_depth, left).T).T)
+
+    def _place(self, log_depth: Array) -> tuple[Array, Array]:
+        """Return where a depth lies between the nodes, from −1 to 1, and the rate of that."""
+        low, high = np.log(self.body.depths[[0, -1]])
+        inside = np.clip(log_depth, low, high)
+        rate = np.where(inside == log_depth, 2 / (high - low), 0.0)
+        return 2 * (inside - low) / (high - low) - 1, rate
 
     def force_curve(self, depth: Array, length: float) -> ForceCurve:
         """Return F/E* [m²] and its partial derivatives at depths [m] and s = ``length`` [m]."""
-        touching, (slope, intercept) = depth > 0, self.width
-        d = np.maximum(depth[touching], 1e-60)
+        touching = depth > 0
+        d = np.maximum(depth[touching], _LEAST_DEPTH)
         u = np.log(d)
-        width = np.exp(intercept + slope * u)
-        x = length / width
-        t = stretched(x)
-        u_inside = np.clip(u, *np.log(self.depths[[0, -1]]))
-        t_inside = np.minimum(t, stretched(self.ratios[-1:])[0])
-        value, by_u, by_t, by_both = (
-            self._spline(u_inside, t_inside, dx=dx, dy=dy, grid=False)
-            for dx, dy in ((0, 0), (1, 0), (0, 1), (1, 1))
+        log, slope, radius = self.body.log_force(u)
+        bare, under = (force_curve(self.body, d, s) for s in (0.0, length))
+        x, left = length / radius, self._left
+        v, (z, z_rate) = x / (1 + x), self._place(u)
+        value, by_z, by_v = (
+            chebval2d(z, 2 * v - 1, part)
+            for part in (left, chebder(left, axis=0), chebder(left, axis=1))
         )
-        u_beyond, t_beyond = u - u_inside, t - t_inside
-        force = np.exp(value + by_u * u_beyond + by_t * t_beyond + by_both * u_beyond * t_beyond)
-        rate_u, rate_t = by_u + by_both * t_beyond, by_t + by_both * u_beyond
-        rate_x = rate_t / (x + SCALE)
+        force = np.exp(log + v * value) * (under.force / bare.force)
+        by_x = (value + 2 * v * by_v) / (1 + x) ** 2
+        by_depth = slope + v * by_z * z_rate + by_x * x * (1 - slope)
+        by_depth = by_depth / d + under.by_depth / under.force - bare.by_depth / bare.force
         out = np.zeros((3, depth.size))
         out[0, touching] = force
-        out[1, touching] = force * (rate_u - rate_x * x * slope) / d
-        out[2, touching] = force * rate_x / width
+        out[1, touching] = force * by_depth
+        out[2, touching] = force * (under.by_length / under.force + by_x / radius)
         return ForceCurve(*out)

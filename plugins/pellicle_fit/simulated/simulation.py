@@ -1,15 +1,17 @@
-"""Plan, run and cache the study behind the force curve of any indenter on any solid."""
+"""Plan, run and cache the studies behind the force curve of any indenter on any solid."""
 
 from __future__ import annotations
 
 import hashlib
 import shutil
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import platformdirs
+import xarray as xr
 
 from pellicle import Grid, Study, results, run_study
 from pellicle.arrays import Array
@@ -17,14 +19,19 @@ from pellicle.components import Executor, Indenter
 from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning
 from pellicle.units import readable
 
-from .interpolated import SCALE, SimulatedCurve, stretched
+from .equivalent import EquivalentBody
+from .interpolated import RATIOS, SimulatedCurve, tensed
 from .solid import UnitKernel, quantities_of
 
 GRID_POINTS = 64
 _OCTAVES = 6
 """Number of factors of 2 between the deepest and the shallowest node."""
-_RATIOS: Array = SCALE * np.expm1(np.linspace(0, stretched(np.array([30.0]))[0], 11))
-"""Nodes s/w; the spline between them has a relative error of about 1e-4."""
+_TOLERANCE = 1e-4
+"""Of the solver, which errs by less than the cells."""
+_COARSE = 2
+"""Number of the node s/a whose contacts are solved on half the cells as well."""
+_ROOM = 1.5
+"""Edge of the grid over the width of the contact that is expected under a tension."""
 _MARGIN = 1.08
 _MARGIN_OF_LAYERS = 1.9
 """Edge of the grid over the width of the indenter: an incompressible thin layer bulges beside the
@@ -41,15 +48,14 @@ def simulated_curve(
     solid: UnitKernel,
     deepest: float,
     *,
-    cache: str | Path | None = None,
-    executor: str | Executor = "serial",
     grid_points: int = GRID_POINTS,
-    progress: bool = False,
+    **options: Any,
 ) -> SimulatedCurve:
-    """Return the force curve of an indenter on a solid down to a depth [m], from a study.
+    """Return the force curve of an indenter on a solid down to a depth [m], from two studies.
 
-    The study, of a reduced modulus of 1 Pa, is run here unless the folder ``cache`` has it, the
-    user's own if None; ``grid_points`` are the cells of each grid along x and y.
+    The first is without tension, and tells where contacts under tension end; both are of a reduced
+    modulus of 1 Pa. ``grid_points`` are the cells of each grid along x and y. The ``options`` are
+    ``executor``, ``progress``, and the folder ``cache`` that keeps studies, the user's own if None.
 
     Raises
     ------
@@ -58,38 +64,42 @@ def simulated_curve(
     ConvergenceError, StorageError
         A run fails, or the folder cannot be used.
     """
-    depths, width, table = plan(indenter, solid, deepest, grid_points)
-    table["study"]["executor"] = {"type": executor} if isinstance(executor, str) else executor
-    study = Study.from_mapping(table)
-    runs = "".join(point.run.identity for point in study.points)
-    folder = Path(cache) if cache else platformdirs.user_cache_path("pellicle")
-    folder = folder / "force-curves" / hashlib.sha256(runs.encode()).hexdigest()[:16]
-    # Once all runs have converged they are deleted, so a table without them is whole.
-    if (folder / "study.h5").exists() and not (folder / "runs").exists():
-        results_table = results.table(folder / "study.h5")
-    else:
-        try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("error", ConvergenceWarning)
-                results_table = run_study(study, folder, progress=progress)
-        except ConvergenceWarning as warning:
-            raise ConvergenceError(
-                f"the force curve needs the study in {folder}: {warning}; another number of "
-                "grid points may help"
-            ) from None
-        shutil.rmtree(folder / "runs")
-    # Each contact on a grid of its own, and on one of half the cells.
-    forces = results_table["force"].values.reshape(2, depths.size, _RATIOS.size)
-    if not (forces > 0).all():
-        raise ConvergenceError("some contacts of the study carry no force; give more grid points")
-    accuracy = float(np.max(np.abs(forces[1] / forces[0] - 1)))
-    return SimulatedCurve(depths, _RATIOS, width, np.log(forces[0]), accuracy, solid.is_half_space)
+    depths, halves, study = plan(indenter, solid, deepest, grid_points)
+    is_layered = any(quantity.unit == "m" for _, quantity, _ in quantities_of(solid.kernel))
+    boxes = 2 * (_MARGIN_OF_LAYERS if is_layered else _MARGIN) * halves
+    rows, fine, coarse = tensed(depths), [grid_points], [grid_points // 2] * tensed(depths).size
+    contacts = {
+        "loading.depth": np.append(depths, rows),
+        "grid.size": np.concatenate([boxes, tensed(boxes)]),
+        "grid.points": np.array(fine * depths.size + coarse),
+    }
+    first = solved(study, contacts, **options)
+    bare, bare_coarse = np.split(first["force"].values.ravel(), [depths.size])
+    curve = SimulatedCurve(EquivalentBody(depths, bare))
+    lengths, _, narrower = curve.nodes
+    shares = first["contact_radius"].values.ravel()[: depths.size] / np.sqrt(halves.prod(axis=1))
+    # Under a tension contacts are narrower, about as those of the body; not so on thin layers.
+    narrower = np.ones_like(narrower) if is_layered else narrower
+    widths = 2 * _ROOM * tensed(shares[:, None] * halves)[:, None] * narrower[..., None]
+    sizes = np.minimum(widths, tensed(boxes)[:, None])
+    contacts = {
+        "loading.depth": np.append(np.repeat(rows, RATIOS.size), rows),
+        f"kernel.{solid.tension}": np.append(lengths, lengths[:, _COARSE]) / 2,
+        "grid.size": np.concatenate([sizes.reshape(-1, 2), sizes[:, _COARSE]]),
+        "grid.points": np.array(fine * lengths.size + coarse),
+    }
+    under, coarse_under = np.split(
+        solved(study, contacts, **options)["force"].values.ravel(), [lengths.size]
+    )
+    forces = under.reshape(lengths.shape)
+    changes = np.append(bare_coarse / tensed(bare), coarse_under / forces[:, _COARSE]) - 1
+    return SimulatedCurve(curve.body, forces, float(np.max(np.abs(changes))), solid.is_half_space)
 
 
 def plan(
     indenter: Indenter, solid: UnitKernel, deepest: float, grid_points: int = GRID_POINTS
-) -> tuple[Array, tuple[float, float], dict[str, Any]]:
-    """Return depths of nodes down to one [m], the width of contacts there, and their study."""
+) -> tuple[Array, Array, dict[str, Any]]:
+    """Return depths of nodes down to one [m], `half_widths` there, and a study of no contact."""
     if indenter.footprint != "unbounded":
         raise ConfigError(
             "ends where the grid does, so it has no force curve of its own; give one whose shape "
@@ -99,26 +109,50 @@ def plan(
     # Rounded up, so that curves of about the same depth share a study.
     top = int(np.ceil(np.log2(deepest) - 1e-9))
     depths: Array = 2.0 ** np.arange(top - _OCTAVES, top + 1, dtype=np.float64)
-    halves = np.array([half_widths(indenter, depth) for depth in depths])
-    slope, intercept = np.polyfit(np.log(depths), np.log(halves.prod(axis=1)) / 2, 1)
-    widths = np.exp(intercept + slope * np.log(depths))
-    is_layered = any(quantity.unit == "m" for _, quantity, _ in quantities_of(solid.kernel))
-    boxes = 2 * (_MARGIN_OF_LAYERS if is_layered else _MARGIN) * halves
-    contacts = {
-        "loading.depth": np.repeat(depths, _RATIOS.size).tolist(),
-        f"kernel.{solid.tension}": np.outer(widths, _RATIOS / 2).ravel().tolist(),
-        "grid.size": np.repeat(boxes, _RATIOS.size, axis=0).tolist(),
-    }
     study: dict[str, Any] = {
         "title": f"force curve of {indenter.type_name} on {solid.kernel.type_name}",
         "grid": {"points": grid_points, "size": 1.0},
         "kernel": solid.kernel.model_dump(exclude_none=True),
         "indenter": indenter.model_dump(exclude_none=True),
         "loading": {"depth": 1.0},
+        "solver": {"type": "active_set", "tolerance": _TOLERANCE},
         "outputs": [],
-        "study": {"vary": {"grid.points": [grid_points, grid_points // 2]}, "zip": [contacts]},
     }
-    return depths, (float(slope), float(intercept)), study
+    return depths, np.array([half_widths(indenter, depth) for depth in depths]), study
+
+
+def solved(
+    study: Mapping[str, Any],
+    contacts: Mapping[str, Array],
+    *,
+    executor: str | Executor = "serial",
+    cache: str | Path | None = None,
+    progress: bool = False,
+) -> xr.Dataset:
+    """Return the table of a study of some contacts, from a place of its own if it is there."""
+    columns = {path: column.tolist() for path, column in contacts.items()}
+    by = {"type": executor} if isinstance(executor, str) else executor
+    whole = Study.from_mapping({**study, "study": {"zip": [columns], "executor": by}})
+    runs = "".join(point.run.identity for point in whole.points)
+    folder = Path(cache) if cache else platformdirs.user_cache_path("pellicle")
+    folder = folder / "force-curves" / hashlib.sha256(runs.encode()).hexdigest()[:16]
+    # Once all runs have converged they are deleted, so a table without them is whole.
+    if (folder / "study.h5").exists() and not (folder / "runs").exists():
+        table = results.table(folder / "study.h5")
+    else:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", ConvergenceWarning)
+                table = run_study(whole, folder, progress=progress)
+        except ConvergenceWarning as warning:
+            raise ConvergenceError(
+                f"the force curve needs the study in {folder}: {warning}; another number of "
+                "grid points may help"
+            ) from None
+        shutil.rmtree(folder / "runs")
+    if not (table["force"].values > 0).all():
+        raise ConvergenceError("some contacts of the study carry no force; give more grid points")
+    return table
 
 
 def half_widths(indenter: Indenter, depth: float) -> tuple[float, float]:

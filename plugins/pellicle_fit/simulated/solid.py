@@ -52,9 +52,9 @@ def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) ->
                 raise ConfigError(
                     "is determined by the fit; leave it out of the kernel, or fix it with fix", path
                 )
-        path, info = _field(table, "poissons_ratio")
+        path, info = _field(table, "poissons_ratio", or_none=True)
         ratio = get(table, path)
-        if ratio is None and poissons_ratio is not None and info.is_required():
+        if ratio is None and poissons_ratio is not None and info and info.is_required():
             ratio, table = poissons_ratio, replaced(table, path, poissons_ratio)
         kernel = registry().make(Kernel, replaced(replaced(table, modulus, 1.0), tension, 0.0))
         for field, quantity, value in quantities_of(kernel):
@@ -80,7 +80,9 @@ def quantities_of(kernel: Kernel) -> Iterator[tuple[str, Quantity, float]]:
             yield path, quantity, value
 
 
-def _field(table: Mapping[str, Any], name: str) -> tuple[str, FieldInfo]:
+def _field(
+    table: Mapping[str, Any], name: str, *, or_none: bool = False
+) -> tuple[str, FieldInfo | None]:
     """Return path and definition of the first field ``name`` in a kernel or a kernel inside it."""
     for path, inner, _ in [("", table, None), *walk(table)]:
         # A table without a type is not a component, such as one of the layers of a kernel.
@@ -88,6 +90,8 @@ def _field(table: Mapping[str, Any], name: str) -> tuple[str, FieldInfo]:
             fields = registry().find("kernel", inner.get("type")).model_fields
             if name in fields:
                 return f"{path}.{name}".lstrip("."), fields[name]
+    if or_none:
+        return name, None
     remedy = "a fit needs one that has it"
     if name == "tension":
         remedy = 'put it under a skin: type = "coated", with this kernel as its substrate'
