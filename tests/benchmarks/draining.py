@@ -152,10 +152,9 @@ def mean_of(ratio: float, surface: str, length: float, time: Array) -> Array:
 
 def least(off: Callable[[Array], Array], start: Array) -> Array:
     """Return where the greatest of some differences is about the least, and print that."""
-    found = least_squares(off, start, x_scale="jac")
-    found = least_squares(lambda p: (300 * off(p)) ** 3, found.x, max_nfev=100)
-    print(np.round(found.x, 4).tolist(), f"error {np.abs(off(found.x)).max():.1e}")
-    return found.x
+    at = least_squares(lambda p: (300 * off(p)) ** 3, start, max_nfev=100).x
+    print(np.round(at, 4).tolist(), *(f"error {np.abs(off(p)).max():.1e}" for p in (start, at)))
+    return at
 
 
 def print_means() -> None:
@@ -177,7 +176,8 @@ def print_means() -> None:
         def still_off(p: Array, still: Any = still) -> Array:
             return (rational(x, p[:5, None] + p[5:, None] * ratio.T) - still).ravel()
 
-        bare = least(still_off, np.ravel(_MEANS[surface][:2]))
+        bare = np.ravel(_MEANS[surface][:2])
+        least(still_off, bare)
         tensed = [[mean_of(r, surface, length, time) for length in LENGTHS] for r in RATIOS]
 
         def off(p: Array, bare: Array = bare, tensed: Any = tensed) -> Array:
