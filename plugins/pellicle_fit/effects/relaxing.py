@@ -4,7 +4,7 @@ from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -176,7 +176,8 @@ class Relaxing(Responds):
         for k, row in enumerate(z):
             first = ([], []) if row[0] <= 0 else (start[k], [0.0])
             path[k] = np.interp(nodes[k], np.append(first[0], time), np.append(first[1], row))
-        area = np.broadcast_to(contact.area(path, 0.0), path.shape)
+        under: Any = length[:, :, 0]
+        area = np.broadcast_to(contact.area(path, under), path.shape)
         bare = replace(contact, modulus=1.0, tension=0.0)
         weights = self._growing(nodes, partial(bare.radius, path), length)
         share = np.einsum("kat,kt->ka", weights, _rates(nodes, area))

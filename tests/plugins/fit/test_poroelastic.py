@@ -48,12 +48,12 @@ def test_times_go_as_areas(length: float) -> None:
 # The first contacts under a tension have few cells.
 @pytest.mark.filterwarnings("ignore:step.*cells:pellicle.errors.ConvergenceWarning")
 @pytest.mark.parametrize("surface", ["open", "sealed"])
-@pytest.mark.parametrize(("length", "error"), [(0.0, 0.01), (1.0, 0.03)])
-def test_kernel(length: float, error: float, surface: str) -> None:
+@pytest.mark.parametrize("length", [0.0, 1.0])
+def test_kernel(length: float, surface: str) -> None:
     """Forces are those of the kernel, which knows the whole surface at all times."""
     gel = Gel(0.1, 0.3, surface, length)
     known = solved(gel)[2]
-    assert np.abs(predicted(gel) - known)[3:].max() < error * known.max()
+    assert np.abs(predicted(gel) - known)[3:].max() < 0.01 * known.max()
 
 
 def holds(estimate: pl.Estimate, value: float) -> bool:
