@@ -14,7 +14,7 @@ from typing import Any
 
 from dask import config
 from distributed import Client, Security
-from distributed.comm import connect
+from distributed.comm.core import connect
 
 from pellicle import ConfigError
 
