@@ -49,6 +49,8 @@ _WITHOUT_EFFECT = {
     *("accept", "rejected", "group_by"),
 }
 """Fields of a configuration that do not change the fit of a curve."""
+_OF_FILES = {"curves", "per_file"}
+"""Fields of a configuration that have an entry for each file."""
 _OF_ALL = {"configuration", "versions", "date", "wall_time"}
 """What the JSON of a population has once."""
 _BYTES_PER_POINT = 2000
@@ -256,7 +258,10 @@ def _write(fits: ManyFits, config: FitConfig, began: float, directory: Path) -> 
     hdf5, text, groups = (directory / f"fits{end}" for end in (".h5", ".csv", "-groups.csv"))
     results.write(dataset.assign_attrs(command="fit"), hdf5)
     heads = {name: results.header(str(name), of) for name, of in dataset.data_vars.items()}
-    frame = dataset.to_dataframe().rename(columns=heads).assign(**attributes)
+    # In each row a list of all files would make the table grow as their number squared.
+    own = config.model_dump_json(exclude_none=True, exclude=_OF_FILES)
+    frame = dataset.to_dataframe().rename(columns=heads)
+    frame = frame.assign(**attributes | {"configuration": own})
     lines = summary(fits.rows)
     for path, content in ((text, frame.reset_index()), (groups, pd.DataFrame(lines))):
         with atomic_write(path) as part:

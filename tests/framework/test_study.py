@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
+import tomli_w
 import xarray as xr
 
 import pellicle as pl
@@ -466,6 +467,25 @@ def test_long_runs_go_to_processes(
     assert len(shared) == 12 - here
     told = capfd.readouterr().err.count("go to processes")
     assert told == (len(shared) > 0 and "executor" not in others)
+
+
+@pytest.mark.parametrize("part", [[], ["--part", "1/1"]])
+@pytest.mark.parametrize("given", [[], ["--threads", "3"]])
+def test_threads_that_are_given_are_those_of_the_executor(
+    part: list[str], given: list[str], cli: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It places runs by the number of threads that they take."""
+    threads = []
+
+    def processes(self: Processes, work: Any, tasks: list[Any], report: Any) -> Iterator[Any]:
+        threads.append((self.threads, work.keywords["threads"]))
+        return Serial().map(work, tasks, report)
+
+    monkeypatch.setattr(Processes, "map", processes)
+    study = {"vary": {TENSION: [0.1, 0.5]}, "executor": {"type": "processes", "threads": 2}}
+    Path("s.toml").write_text(tomli_w.dumps(RUN | {"study": study}), encoding="utf-8")
+    cli("run", "s.toml", "--quiet", *given, *part)
+    assert {*threads} == {(3, 3) if given else (2, 2)}
 
 
 def test_an_unfinished_table_is_completed_as_it_is_read(tmp_path: Path) -> None:

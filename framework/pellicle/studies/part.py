@@ -18,7 +18,16 @@ from pellicle.files import check_writable
 from pellicle.results.runs import progress_of
 from pellicle.runs.runner import Executed
 
-from .runner import SOLVED_ELSEWHERE, WARNINGS, RunTask, execute, planned, reason_of, solve
+from .runner import (
+    SOLVED_ELSEWHERE,
+    WARNINGS,
+    RunTask,
+    execute,
+    planned,
+    reason_of,
+    solve,
+    with_threads,
+)
 
 
 class PartSolved(NamedTuple):
@@ -56,7 +65,8 @@ def execute_part(
 
     # The cores are those of other parts, too.
     executor = study.executor or registry().make(Executor, {"type": DEFAULT_EXECUTOR})
-    work = partial(solve, threads=threads or executor.threads)
+    executor = with_threads(executor, threads)
+    work = partial(solve, threads=executor.threads)
     with BatchProgress(len(own), len(own) - len(todo), progress) as bar:
         mapped(executor, work, todo, xr.Dataset, keep, bar)
     for message in messages:

@@ -277,7 +277,8 @@ def _solve_all(
     """
 
     def solve_by(by: Executor, tasks: Sequence[RunTask]) -> None:
-        mapped(by, partial(solve, threads=threads or by.threads), tasks, xr.Dataset, keep, bar)
+        by = with_threads(by, threads)
+        mapped(by, partial(solve, threads=by.threads), tasks, xr.Dataset, keep, bar)
 
     while todo and executor is None:
         task, *todo = todo
@@ -290,10 +291,15 @@ def _solve_all(
             continue
         needed = 2 * (max(task.memory for task in todo) + memory.PROCESS)
         if (available := memory.available()) is None or needed <= available:
-            executor = registry().make(Executor, {"type": "processes", "threads": threads or 1})
+            executor = registry().make(Executor, {"type": "processes"})
             bar.say(shared_among_processes(len(todo), left))
     if executor:
         solve_by(executor, todo)
+
+
+def with_threads(executor: Executor, threads: int | None) -> Executor:
+    """Return an executor that gives each run so many threads; its own number if none is given."""
+    return executor.model_copy(update={"threads": threads}) if threads else executor
 
 
 def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:

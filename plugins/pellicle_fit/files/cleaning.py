@@ -174,6 +174,14 @@ def _check_rise(z: Array, f: Array) -> None:
     # Neighbours differ by the noise and by the slope, so this is an upper bound of the noise.
     noise = float(np.sqrt(np.mean(np.diff(f[order]) ** 2) / 2))
     least = _SIGNIFICANT * noise * np.sqrt(1 / low.size + 1 / high.size)
+    # The wrong sign has no force above that before contact.
+    if rise < -least and f.max() - low.mean() > -rise / 2:
+        raise ConfigError(
+            f"falls by {readable(-rise, 'N', 3)} over the deepest tenth, and pushes in some rows "
+            "only: the tip jumps into contact and sticks over most of it; give a curve that goes "
+            "deeper",
+            "force",
+        )
     if rise < -least:
         raise ConfigError(
             f"falls by {readable(-rise, 'N', 3)} as the position grows: a negative stiffness; "

@@ -23,6 +23,12 @@ from .measurement import Measurement as Measurement
 from .measurement import Site as Site
 from .missing import OPTIONS, MissingInputError
 
+DRIVEN = (
+    "the file holds no height that was measured, only that to which the piezo was driven; without "
+    "a closed loop its motion differs from that by 10 to 50 %, and the modulus by as much"
+)
+"""Warning of a curve whose height is not that of a sensor."""
+
 
 class Reader(Component):
     """Reads the curves in files of one kind, which suffix and content tell."""

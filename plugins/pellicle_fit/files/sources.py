@@ -142,23 +142,38 @@ def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
 def _files(path: Path, mapped: Mapping[str, str]) -> list[tuple[Path, dict[str, str], Path]]:
     """Return the files that a path stands for, each with its fields in a list of files, and that.
 
-    A list is a table with a header such as ``file,radius [um]``, one of whose files exists, or all
-    of whose files have the suffix of a curve; its empty cells are left out.
+    A list is a table with a header such as ``file,radius [um]``, in whose rows a file, a folder or
+    a pattern exists, or all of whose files have the suffix of a curve; its empty cells are left
+    out.
     """
     if is_folder(path):
-        files = [file for file in sorted(path.glob("[!.]*")) if is_read(file)]
-        if not files:
-            raise ConfigError(f"{path}: holds no file of a known kind ({', '.join(suffixes())})")
-        return [(file, {}, file) for file in files]
+        return [(file, {}, file) for file in _in_folder(path)]
     is_table = path.suffix.lower() in TEXT and is_file(path)
     rows = read_list(path, mapped) if is_table else []
-    files = [path.parent / name for row in rows if (name := row.pop(FILE, ""))]
-    is_list = bool(files) and all(map(has_known_suffix, files))
-    if not is_list and not any(map(is_file, files)):
+    listed = [(name, row) for row in rows if (name := row.pop(FILE, ""))]
+    paths = [path.parent / name for name, _ in listed]
+    is_list = bool(paths) and all(map(has_known_suffix, paths))
+    if not is_list and not any(exists(p) or (has_magic(str(p)) and glob(str(p))) for p in paths):
         return [(path, {}, path)]
-    if len(files) < len(rows):
+    if len(listed) < len(rows):
         raise ConfigError(f"{path}: has a row without a file; name one in each row")
-    return [(file, fields, path) for file, fields in zip(files, rows, strict=True)]
+    return [
+        (file, fields, path)
+        for name, fields in listed
+        for one in expanded(name, path.parent)
+        for file in (_in_folder(one) if is_folder(one) else [one])
+    ]
+
+
+def _in_folder(folder: Path) -> list[Path]:
+    """Return the files with curves in a folder, without those in its folders."""
+    entries = sorted(folder.glob("[!.]*"))
+    if files := [file for file in entries if is_read(file)]:
+        return files
+    of = next(
+        (f"; give its folders, {entry.parent}/*" for entry in entries if is_folder(entry)), ""
+    )
+    raise ConfigError(f"{folder}: holds no file of a known kind ({', '.join(suffixes())}){of}")
 
 
 def read_curves(path: str | Path, **calibration: Any) -> dict[str, Measurement]:

@@ -32,7 +32,7 @@ from pellicle_fit.files.columns import (
 )
 from pellicle_fit.files.measurement import CurvesByLabel, Measurement, Site
 from pellicle_fit.files.missing import OPTIONS, MissingInputError
-from pellicle_fit.files.reader import Reader
+from pellicle_fit.files.reader import DRIVEN, Reader
 from pellicle_fit.files.text_table import read_table
 
 from .tables import Table
@@ -300,7 +300,7 @@ def _curve(
             site = Site(*(Quantity("m")(metadata.get(f"position {letter}")) for letter in "xy"))
         pause = _pause(data, metadata)
     origin = curve.origin._replace(sensitivity=metadata.get("sensitivity"), library="afmformats")
-    messages = (_NT_MDT,) if is_nt_mdt else ()
+    messages = (_NT_MDT,) * is_nt_mdt + (DRIVEN,) * (place == "height (piezo)")
     curve = replace(curve, origin=origin, site=site, messages=messages, pause=pause)
     return recalibrated(curve, calibration, is_own=True)
 

@@ -18,7 +18,14 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle_fit.files.measurement import CurvesByLabel, Measurement
-from pellicle_fit.files.reader import Calibration, Reader, curve_of, refused, sections_of
+from pellicle_fit.files.reader import (
+    DRIVEN,
+    Calibration,
+    Reader,
+    curve_of,
+    refused,
+    sections_of,
+)
 
 _MARK, _END = rb"\*Force file list", rb"\*File list end"
 _LONGEST = 1 << 20
@@ -67,7 +74,9 @@ def _curve(path: Path, calibration: Calibration) -> Measurement:
         rows = _rows(path, bend)
         slope, sensitivity = _scale(bend["Z scale"], known)
         ramp = float(_match(_SCALE, _either(bend, "Ramp size", "Ramp Size"))[3])
-        if sensor := channels.get("Height Sensor"):
+        sensor = channels.get("Height Sensor")
+        messages = () if sensor or known.get("Z Closed Loop") == "On" else (DRIVEN,)
+        if sensor:
             heights, (step, extent) = _rows(path, sensor), _scale(sensor["Z scale"], known)
             place = [step * extent * values for values in heights]
         else:
@@ -87,7 +96,12 @@ def _curve(path: Path, calibration: Calibration) -> Measurement:
     if all(np.isfinite(time) and time > 0 for time in times):
         columns["time"] = np.append(spans[0], times[0] + spans[1])[exists], "s"
     return curve_of(
-        path, columns, calibration, sensitivity=sensitivity, spring_constant=stiffness or None
+        path,
+        columns,
+        calibration,
+        sensitivity=sensitivity,
+        spring_constant=stiffness or None,
+        messages=messages,
     )
 
 

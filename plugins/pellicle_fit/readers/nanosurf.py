@@ -16,12 +16,20 @@ import numpy as np
 
 from pellicle.arrays import Array, Mask
 from pellicle_fit.files.measurement import CurvesByLabel, Measurement
-from pellicle_fit.files.reader import Calibration, Reader, curve_of, refused, sections_of
+from pellicle_fit.files.reader import (
+    DRIVEN,
+    Calibration,
+    Reader,
+    curve_of,
+    refused,
+    sections_of,
+)
 
 _END = b"\r\n#!"
 _LONGEST = 1 << 26
 """Bytes in which a header ends; each line of a map adds a hundred."""
 _FORWARD, _PAUSE, _BACKWARD = _FRAMES = "Spec forward", "Spec fwd pause", "Spec backward"
+_SENSOR = "Z-Axis Sensor"
 _SECTION = re.compile(r"^\[(.+)\]$", re.MULTILINE)
 _NUMBER = re.compile(r"[DL]\[(.+)\]\*\[(.*)\]")
 Sections = Mapping[str, Mapping[str, str]]
@@ -129,6 +137,7 @@ def _curve(
             time.append(np.linspace(began, ended, count, endpoint=False))
             began = ended
             pause.append(np.full(count, frame == _PAUSE))
+        is_measured = all(_SENSOR in channels[frame] for frame in _FRAMES if frame in channels)
         stiffness = _number(sections.get(r"DataSet\Calibration\Cantilever", {}), "Prop0")
     except (OSError, ValueError, LookupError, OverflowError) as error:
         raise refused(path, "a spectrum of Nanosurf", error) from None
@@ -146,13 +155,14 @@ def _curve(
         calibration,
         spring_constant=stiffness if stiffness > 0 else None,
         pause=is_pause if is_pause.any() else None,
+        messages=() if is_measured else (DRIVEN,),
     )
 
 
 def _place(path: Path, measured: Mapping[str, Channel], axis: str, number: int) -> Array:
     """Return the place of the base [m] in a line: that of its sensor, or else as it was driven."""
     head = measured["Deflection"].head
-    channel = measured.get("Z-Axis Sensor") or measured.get(axis)
+    channel = measured.get(_SENSOR) or measured.get(axis)
     if channel is None:
         count = measured["Deflection"].line(path, number).size
         line = f"LineDim{number}" if f"LineDim{number}Min" in head else "Dim0"

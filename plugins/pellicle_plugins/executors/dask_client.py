@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import shutil
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
 from importlib import import_module
 from pathlib import Path
@@ -12,6 +14,7 @@ from typing import Any
 
 from dask import config
 from distributed import Client, Security
+from distributed.comm.core import connect
 
 from pellicle import ConfigError
 
@@ -22,7 +25,7 @@ def client_of(address: str | None, file: Path | None, certificates: Any) -> Clie
     With certificates (``ca_file``, ``cert``, ``key``) they talk by TLS.
     """
     remedy = f"start `dask scheduler --scheduler-file {file and file.name}`"
-    field, wrong, security = "scheduler_file", f"{file} holds no address", None
+    field, wrong, security = "scheduler_file", f"{file} holds no address", Security()
     try:
         if file:
             address = str(json.loads(file.read_text(encoding="utf-8"))["address"])
@@ -34,10 +37,13 @@ def client_of(address: str | None, file: Path | None, certificates: Any) -> Clie
                 "tls_client_key": str(certificates.key),
             }
             security = Security(require_encryption=True, **files)
-            security.get_connection_args("client")
+        options = security.get_connection_args("client")
         field, wrong = "address", f"no scheduler answers at {address!r}"
         remedy = "give the address that `dask scheduler` prints, or use the executor "
         remedy += '"processes" on one machine'
+        # In a thread: a notebook has a loop of its own.
+        with ThreadPoolExecutor(1) as pool:
+            pool.submit(asyncio.run, _reach(address, options)).result()
         return Client(address, security=security, set_as_default=False)
     except (OSError, ValueError, TypeError, KeyError, RuntimeError) as error:
         # So dask refuses an address with TLS without certificates, and the reverse.
@@ -45,7 +51,14 @@ def client_of(address: str | None, file: Path | None, certificates: Any) -> Clie
             kind = "has no TLS; leave out" if certificates else "has TLS; give"
             message = f"the scheduler at {address!r} {kind} security"
             raise ConfigError(message, "security") from None
-        raise ConfigError(f"{wrong} ({error}); {remedy}", field) from None
+        reason = f" ({error})" if str(error) else ""
+        raise ConfigError(f"{wrong}{reason}; {remedy}", field) from None
+
+
+async def _reach(address: str | None, options: dict[str, Any]) -> None:
+    """Connect once: a client that cannot is left half made, and takes a minute to end."""
+    comm = await connect(address, **options)
+    await comm.close()
 
 
 def client_of_jobs(queue: str, jobs: int) -> AbstractContextManager[Client]:

@@ -1,7 +1,6 @@
 """How the executor dask finds its scheduler: a file, TLS, or jobs of a batch system."""
 
 import gc
-import json
 import re
 import shutil
 import stat
@@ -13,22 +12,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import tomli_w
 from dask import config as configuration
 
 import pellicle as pl
 from pellicle.schema.from_file import paths_relative_to
 from tests.plugins.executors.jobs import Job, dask, silence, square
+from tests.tables_of_runs import RUN
 
-REFUSED = """
-import json, os, sys
-import pellicle as pl
-try:
-    executor = pl.registry().make(pl.Executor, {"type": "dask", **json.loads(sys.argv[1])})
-    list(executor.map(None, [1], None))
-except pl.ConfigError as error:
-    print(error, flush=True)
-    os._exit(0)
-"""
 JOBS = [Job(i) for i in range(4)]
 SBATCH = """#!/bin/sh
 copy=$(mktemp -p {folder}); cp "$1" "$copy"
@@ -42,13 +33,16 @@ def squares(**fields: Any) -> dict[Job, Any]:
     return dict(dask(**fields).map(square, JOBS, silence))
 
 
-def refusal(**fields: Any) -> str:
-    """Return why an executor cannot be used.
-
-    In a process of its own: a client of dask that is refused leaves its loop and sockets behind.
-    """
-    command = [sys.executable, "-c", REFUSED, json.dumps(fields)]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+def refusal(folder: Path, **fields: Any) -> str:
+    """Return why `pellicle run` does not use an executor: that, an exit code of 2, and no more."""
+    changes = {"executor": {"type": "dask", **fields}, "vary": {"kernel.tension": [0, 1]}}
+    (folder / "s.toml").write_text(tomli_w.dumps(RUN | {"study": changes}), encoding="utf-8")
+    command = [sys.executable, "-m", "pellicle", "run", "s.toml"]
+    # A client that is left half made takes a minute to end, and says so.
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120)
+    (line,) = done.stderr.splitlines()
+    assert done.returncode == 2
+    return line
 
 
 @pytest.fixture(scope="module")
@@ -86,8 +80,11 @@ def test_no_scheduler_file(text: str | None, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_tls(start_dask: Any, certificates: dict[str, str]) -> None:
+def test_tls(start_dask: Any, certificates: dict[str, str], tmp_path: Path) -> None:
     """Who has a certificate of the authority is let in; who has none is told to give it."""
+    # What is first imported while settings are set loses its own when they end.
+    pytest.importorskip("distributed")
+    strange = {"ca_file": certificates["cert"], "cert": certificates["cert"]}
     settings = {"distributed.comm.tls.ca-file": certificates["ca_file"]}
     for role in ("scheduler", "worker", "client"):
         for kind in ("cert", "key"):
@@ -102,14 +99,18 @@ def test_tls(start_dask: Any, certificates: dict[str, str]) -> None:
             address = stack.enter_context(start_dask(1, **of_processes))
         assert address.startswith("tls://")
         assert squares(address=address, security=certificates) == {j: j.number**2 for j in JOBS}
-        assert re.search(r"security: .* has TLS; give security", refusal(address=address))
+        assert re.search(r"security: .* has TLS; give security", refusal(tmp_path, address=address))
+        told = refusal(tmp_path, address=address, security=certificates | strange)
+        assert "address: no scheduler answers at 'tls://" in told
 
 
 @pytest.mark.slow
-def test_no_tls(dask_address: str, certificates: dict[str, str]) -> None:
+def test_no_tls(dask_address: str, certificates: dict[str, str], tmp_path: Path) -> None:
     """What is to be encrypted is not sent as it is, and files that are no certificates are told."""
-    told = refusal(address=dask_address, security=certificates)
+    told = refusal(tmp_path, address=dask_address, security=certificates)
     assert re.search(r"security: .* has no TLS; leave out security", told)
+    told = refusal(tmp_path, address=dask_address.replace("tcp", "nothing"))
+    assert "address: no scheduler answers at 'nothing://" in told
     for wrong in ("/nowhere.pem", __file__):
         with pytest.raises(pl.ConfigError, match="security: cannot be used"):
             squares(address=dask_address, security=certificates | {"cert": wrong})

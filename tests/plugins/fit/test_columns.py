@@ -19,6 +19,7 @@ from pellicle_fit.files.choice import read
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.columns import Calibration
 from pellicle_fit.files.measurement import Measurement
+from pellicle_fit.files.sources import gather
 
 pytestmark = pytest.mark.usefixtures("no_rivals")
 
@@ -224,6 +225,29 @@ def test_a_preamble_with_the_word_file(tmp_path: Path, preamble: str, columns: s
     for path, count in ((tmp_path / "a.txt", 1), (tmp_path, 2)):
         read_curves = pl.read_curves(path, columns=columns)
         assert [*map(is_the_curve, read_curves.values())] == [True] * count
+
+
+def test_folders_and_patterns_in_a_list_of_files(tmp_path: Path) -> None:
+    """Each of their files has the fields of the row; files of one maker share tip and spring."""
+    for name in ("tips/a.csv", "tips/b.csv", "beads/c.csv", "beads/[d].csv"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(f"position [um],force [nN]\n{rows()}")
+    path = tmp_path / "list.csv"
+    for listed in ("tips,1\nbeads,5", "tips/*,1\nbeads/c*,5\nbeads/[d].csv,5"):
+        path.write_text(f"file,radius [um]\n{listed}\n")
+        sources = [*gather(path, Calibration(), {})]
+        assert [Path(one.file).stem for one in sources[:2]] == ["a", "b"]
+        assert {Path(one.file).stem for one in sources[2:]} == {"c", "[d]"}
+        assert [one.fields["radius"] for one in sources] == ["1 um", "1 um", "5 um", "5 um"]
+        for one in sources:
+            assert isinstance(one.curve, Measurement)
+            assert is_the_curve(one.curve)
+    path.write_text("file,radius [um]\ntips,1\nlost/*.csv,5\n")
+    with pytest.raises(pl.ConfigError, match=r"lost/\*.csv: matches no file"):
+        pl.read_curves(path)
+    path.unlink()
+    with pytest.raises(pl.ConfigError, match=r"of a known kind \(.*\); give its folders, .*/\*$"):
+        pl.read_curves(tmp_path)
 
 
 def test_lists_of_files(tmp_path: Path) -> None:

@@ -127,6 +127,7 @@ BAD: list[tuple[str, Callable[[Array, Array], tuple[Array, Array]]]] = [
     ("this is a retract", lambda z, f: (z[::-1], f[::-1])),
     ("negative stiffness", lambda z, f: (z, -f)),
     ("negative stiffness", lambda z, f: (-z, f)),
+    ("sticks over most of it", lambda z, f: (z, f.max() * (2.0 * (z > z[-4]) - (z > z[-30])))),
     ("no contact in the curve", lambda z, f: (z, 1e-9 * np.random.default_rng(1).random(z.size))),
     ("no contact in the curve", lambda z, f: (z, 0 * f)),
     ("give a curve that moves", lambda z, f: (np.full_like(z, 1e-6), f)),

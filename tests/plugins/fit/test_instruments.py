@@ -15,7 +15,7 @@ from pellicle_fit.files.choice import read
 from pellicle_fit.files.cleaning import clean
 from pellicle_fit.files.columns import Calibration
 from pellicle_fit.files.measurement import Measurement, Segment
-from pellicle_fit.files.reader import Reader
+from pellicle_fit.files.reader import DRIVEN, Reader
 from pellicle_fit.testing import check_reader
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.plugins.fit import instruments
@@ -362,6 +362,33 @@ def test_unmeasured_rows_and_units(tmp_path: Path, recording: instruments.Record
     path.write_bytes(bytes(content).replace(b" nm/V\r", b" pA/V\r"))
     with pytest.raises(pl.StorageError, match="is in pA/V, not in nm/V"):
         only(path)
+
+
+def test_a_height_that_was_not_measured_is_told(
+    tmp_path: Path, recording: instruments.Recording
+) -> None:
+    """Piezos without a closed loop miss it by far; with the height of a sensor nothing is told."""
+    changes = {
+        "curve.000": (b'"Height Sensor"', b'"Weight Sensor"'),
+        "spectrum.nid": (b"Dim2Name=Z-Axis Sensor", b"Dim2Name=Z-Axis"),
+    }
+    for name in ("curve.000", "spectrum.nid", "export.h5"):
+        path = tmp_path / name
+        instruments.WRITERS[name](path, recording)
+        (measured,) = (reader() for reader in read(path).values())
+        if name in changes:
+            path.write_bytes(path.read_bytes().replace(*changes[name]))
+        else:
+            with h5py.File(path, "a") as file:
+                file.move("0/height (measured)", "0/height (piezo)")
+        (driven,) = (reader() for reader in read(path).values())
+        assert measured.messages == ()
+        assert [*driven.messages] == [DRIVEN]
+    path = tmp_path / "curve.000"
+    closed = path.read_bytes().replace(b"\r\n\\Forward", b"\r\n\\Z Closed Loop: On\r\n\\Forward")
+    path.write_bytes(closed.replace(b"\0" * 20, b"", 1))
+    (driven,) = (reader() for reader in read(path).values())
+    assert driven.messages == ()
 
 
 def test_files_of_images_are_passed_over(tmp_path: Path, recording: instruments.Recording) -> None:
