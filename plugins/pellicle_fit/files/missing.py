@@ -24,8 +24,8 @@ UNKNOWN = "<column>"
 SHOWN = 12
 """Largest number of columns that a message names."""
 _ROLES = {
-    "time": "time",
-    "force": "force|load|^f$",
+    "time": "time|zeit|temps|tempo|tiempo",
+    "force": "force|load|kraft|forza|fuerza|^f$",
     "deflection": "defl|bending",
     "position": "tip|separation|indent|depth",
     "height": r"height|piezo|ramp|sensor|snsr|exten|position|distance|displacement|(^|[\W_])z",
