@@ -199,7 +199,9 @@ def _heads(line: str) -> list[Column]:
         line = match[2]
     line = line.lstrip("".join(_COMMENT))
     separator = _separator(line)
-    return _named(_WORD.findall(line.replace('"', "")) if separator == " " else _split([line], separator)[0])
+    return _named(
+        _WORD.findall(line.replace('"', "")) if separator == " " else _split([line], separator)[0]
+    )
 
 
 def _named(cells: Sequence[str]) -> list[Column]:

@@ -238,6 +238,9 @@ def _recordings(path: Path, values: dict[str, float], is_nt_mdt: bool) -> list[M
             names = [n for n in archive.namelist() if _WORKSHOP in archive.open(n).read(_BEGINNING)]
             texts = (TextIOWrapper(archive.open(name), "utf-8") for name in sorted(names))
             return [recording for text in texts for recording in load_csv(text, None, values)]
+    if suffix in _JPK:
+        # An archive stays open there, and would hide the file that replaces it.
+        formats.fmt_jpk.jpk_reader.ArchiveCache.open_archives.pop(path, None)
     recipes = formats.formats_by_suffix[suffix]
     recipe = formats.recipe_ntmdt_txt if is_nt_mdt else formats.recipe_chiaro_txt
     loader = recipe["loader"] if suffix == ".txt" else recipes[0].loader
@@ -290,7 +293,9 @@ def _curve(
         }
         if tip := columns.get("position"):
             columns["position"] = tip._replace(values=-tip.values)
-        constant = metadata.get("spring constant", calibration.spring_constant)
+        constant = metadata.get("spring constant")
+        if constant is None or (isinstance(constant, float) and not 0 < constant < np.inf):
+            constant = calibration.spring_constant
         own = Calibration(spring_constant=constant, speed=calibration.speed)
         if lacks := lacking(columns, own):
             raise MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in lacks})

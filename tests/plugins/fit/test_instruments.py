@@ -222,6 +222,32 @@ def test_segments_that_afmformats_cannot_read(
         read(path)
 
 
+def test_a_file_that_is_replaced_is_read_again(
+    tmp_path: Path, recording: instruments.Recording
+) -> None:
+    """An archive of JPK stays open in afmformats, which would go on with the old one."""
+    path = tmp_path / "curve.jpk-force"
+    for factor in (1.0, 2.0):
+        new = tmp_path / "new"
+        instruments.jpk(new, replace(recording, force=factor * recording.force))
+        new.replace(path)
+        assert only(path).force == pytest.approx(factor * SEEN[1], abs=1e-6 * np.ptp(SEEN[1]))
+
+
+@pytest.mark.parametrize("constant", [np.nan, 0.0, -0.05])
+def test_a_spring_constant_that_is_none_is_replaced(
+    tmp_path: Path, recording: instruments.Recording, constant: float
+) -> None:
+    """Exports of curves that were not calibrated hold such numbers: asked for, then read."""
+    path = tmp_path / "export.h5"
+    instruments.hdf5(path, recording)
+    with h5py.File(path, "a") as file:
+        file["0"].attrs["spring constant"] = constant
+    with pytest.raises(pl.ConfigError, match="missing: spring_constant"):
+        only(path)
+    assert is_curve(only(path, GIVEN.model_copy(update={"sensitivity": None})), *SEEN)
+
+
 def test_damaged_file(tmp_path: Path, recording: instruments.Recording) -> None:
     """A file that was cut off is said to be unreadable."""
     path = tmp_path / "curve.jpk-force"
