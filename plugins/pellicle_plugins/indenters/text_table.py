@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,7 +10,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
-from pellicle.files import read_text
+from pellicle.files import read_text, splits_decimals
 
 from .file_checks import require_memory
 
@@ -30,7 +29,6 @@ _NUMBERS = re.compile(
     r"(?:[\d.,;\s]|[-+](?=[\d.,iI])|[eE](?=[-+\d])|(?i:nan|bad|inf(?:init[ey])?))++"
 )
 _NUMBER = re.compile(r"[-+]?\.?\d")
-_WHOLE = re.compile(r"[-+]?\d+")
 _MISSING = re.compile("(?i:bad|[-+]?inf(?:init[ey])?)")
 _BETWEEN_BLANKS = re.compile(r"\d[^\S\n]+[-+\d]")
 # Spreadsheets write #N/A for a missing value.
@@ -74,7 +72,7 @@ def read_tables(text: str, path: Path) -> dict[str, TextTable]:
     if not any(map(str.strip, rows.values())):
         return {}
     widths = {number: len(row.split()) for number, row in rows.items()}
-    if mark == "," and _is_split(rows.values()):
+    if mark == "," and splits_decimals(map(str.split, rows.values())):
         raise ConfigError(
             f"{path} has whole numbers alone, each second of which looks like decimals: commas may "
             "separate its columns and its decimals too; export it with decimal points",
@@ -124,27 +122,6 @@ def _rows(bodies: list[str]) -> tuple[dict[int, str], str]:
             lacks_last = whole[i].endswith(mark) and row.count(mark) == most - 1
             rows[i] = (f"{row}{mark}nan" if lacks_last else row).replace(mark, " ")
     return {i: _MISSING.sub("nan", row).replace(",", ".") for i, row in rows.items()}, mark
-
-
-def _is_split(rows: Iterable[str]) -> bool:
-    """Return whether whole numbers are in turn those before and after a decimal comma.
-
-    Decimals have no sign, and one length that others have not or zeros in front.
-    """
-    lengths: tuple[set[int], set[int]] = set(), set()
-    few, is_led = set[str](), False
-    for row in rows:
-        cells = row.split()
-        wholes, decimals = cells[::2], cells[1::2]
-        if len(wholes) != len(decimals) or not all(map(_WHOLE.fullmatch, wholes)):
-            return False
-        if not all(map(str.isdecimal, decimals)):
-            return False
-        is_led = is_led or any(cell[0] == "0" < cell for cell in decimals)
-        few.update(decimals if len(few) < _FEWEST else ())
-        for of, part in zip(lengths, (wholes, decimals), strict=True):
-            of.update(len(cell.lstrip("+-")) for cell in part)
-    return len(few) >= _FEWEST and (is_led or (len(lengths[1]) == 1 and lengths[0] != lengths[1]))
 
 
 def _require_no_words(

@@ -227,6 +227,12 @@ def test_commas_that_are_both_are_refused(tmp_path: Path, columns: str | None) -
     (tmp_path / "a.csv").write_text(f"{header}\n{rows(comma=True)}", encoding="utf-8")
     with pytest.raises(pl.ConfigError, match="has 4 numbers below 2 names"):
         curves(tmp_path / "a.csv", columns)
+    text = "9,5,0,2\n10,6,0,7\n11,1,1,9\n12,3,2,4\n"
+    (tmp_path / "b.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match="each second of which looks like decimals"):
+        curves(tmp_path / "b.csv", BY_NUMBER)
+    (tmp_path / "b.csv").write_text(text.replace(",", ";"), encoding="utf-8")
+    assert curves(tmp_path / "b.csv", BY_NUMBER)[""].position[0] == pytest.approx(9e-6)
 
 
 @pytest.mark.parametrize("columns", [None, BY_NUMBER])
