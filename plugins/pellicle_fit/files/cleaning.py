@@ -134,6 +134,8 @@ def _spans(number: NDArray[np.intp], rows: NDArray[np.intp]) -> str:
 
 
 def _array(values: ArrayLike, name: str) -> Array:
+    if isinstance(values, np.ma.MaskedArray):
+        values = values.astype(float).filled(np.nan)
     with suppress(TypeError, ValueError, OverflowError), np.errstate(over="ignore"):
         if not np.iscomplexobj(values) and (array := np.asarray(values, dtype=float)).ndim == 1:
             return array
