@@ -135,7 +135,7 @@ def _spans(number: NDArray[np.intp], rows: NDArray[np.intp]) -> str:
 
 def _array(values: ArrayLike, name: str) -> Array:
     if isinstance(values, np.ma.MaskedArray):
-        values = values.astype(float).filled(np.nan)
+        values = np.ma.filled(values.astype(float), np.nan)
     with suppress(TypeError, ValueError, OverflowError), np.errstate(over="ignore"):
         if not np.iscomplexobj(values) and (array := np.asarray(values, dtype=float)).ndim == 1:
             return array
