@@ -1,8 +1,10 @@
-"""Datasets of HDF5 files whose numbers are elsewhere, or not the values themselves."""
+"""Datasets of HDF5 files whose numbers are elsewhere, packed or missing."""
 
 from __future__ import annotations
 
 from typing import Any
+
+import numpy as np
 
 
 def fault_of_source(dataset: Any) -> str:
@@ -20,3 +22,11 @@ def fault_of_packing(dataset: Any) -> str:
                 f"has {dataset.name.strip('/')} packed by its attribute {name}; write it unpacked"
             )
     return ""
+
+
+def measured(dataset: Any) -> Any:
+    """Return the numbers of a dataset; NaN where they are the one that it states for missing."""
+    values = dataset[...]
+    if (mark := dataset.attrs.get("_FillValue")) is None or values.dtype.kind not in "fiu":
+        return values
+    return np.where(values == mark, np.nan, values)

@@ -6,6 +6,7 @@ import re
 import sys
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -615,6 +616,18 @@ def test_numbers_that_are_not_those_of_the_file_are_refused(tmp_path: Path, kind
             file["force"].attrs[kind] = 0.5
     with pytest.raises(pl.ConfigError, match=r"a\.h5: (takes|has) force (from other|packed)"):
         curves(path, "position = position um, force = force nN")
+
+
+def test_what_an_attribute_says_of_numbers(tmp_path: Path) -> None:
+    """A unit may be an array of one, and a number stands for missing ones."""
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["position"], file["force"] = Z, np.where(Z == 3.5, -32768.0, F)
+        file["position"].attrs["units"] = np.array([b"um"])
+        file["force"].attrs["units"] = "nN"
+        file["force"].attrs["_FillValue"] = np.array([-32768.0])
+    curve = curves(tmp_path / "a.h5")[""]
+    assert is_the_curve(replace(curve, force=np.where(Z == 3.5, 1e-9 * F, curve.force)))
+    assert np.array_equal(np.isnan(curve.force), Z == 3.5)
 
 
 def test_paths_that_lead_nowhere(tmp_path: Path) -> None:

@@ -158,6 +158,11 @@ def test_packed_numbers_are_refused(tmp_path: Path, name: str) -> None:
         file["z"].attrs[name] = 1e-3
     with pytest.raises(pl.ConfigError, match=f"has z packed by its attribute {name}"):
         pl.indenter("heights", path=tmp_path / "a.nc", unit="1 um")
+    with h5py.File(tmp_path / "a.nc", "a") as file:
+        del file["z"].attrs[name]
+        file["z"].attrs["_FillValue"] = file["z"][:1, 0]
+    with pytest.raises(pl.ConfigError, match="holds 1 NaN or infinite heights"):
+        pl.indenter("heights", path=tmp_path / "a.nc", unit="1 um")
 
 
 @pytest.mark.parametrize("digits", [1, 2, 3])
