@@ -30,16 +30,17 @@ HeightUnit = Annotated[Length, BeforeValidator(one_of_it, json_schema_input_type
 
 _MARKS = 999, 9999, 99999, 999.25, 32767, 32768, 65535, 2147483647, 2147483648, 4294967295
 """Numbers that, with either sign, programs write for a missing point and a surface may have."""
-_FEWEST = 8
-"""Number of heights between the lowest and the highest that tell how far heights differ."""
+_FEWEST, _FAR = 30, 2.0
+"""Number of heights between the lowest and the highest that tell how far heights differ, and how
+many times farther a number is that marks missing points though it is not usual."""
 
 
 def marks_in(heights: Array, unit: float, *, is_steep: bool = False) -> list[str]:
     """Return what to do with the lowest and highest heights [m] if they mark missing points.
 
     ``unit`` is the length [m] of 1 in the file. A mark is farther from all heights between the
-    lowest and the highest than these are from each other; on a surface that is too steep a usual
-    number is enough, and of one with two heights it is needed.
+    lowest and the highest than these are from each other, twice as far if its number is not usual;
+    on a surface that is too steep a usual number, or any that is as far, is enough.
     """
     measured = heights[np.isfinite(heights)]
     ends = np.unique([measured.min(), measured.max()]) if measured.size else measured
@@ -52,9 +53,10 @@ def marks_in(heights: Array, unit: float, *, is_steep: bool = False) -> list[str
         between = others[~np.isin(others, ends)]
         rest = between if between.size >= _FEWEST else others
         spread = np.ptp(rest) if rest.size else np.inf
-        is_apart = np.abs(rest - value).min(initial=np.inf) > spread
-        is_rough = is_steep or (spread > 0 and rest is between)
-        if (is_apart and (is_usual or is_rough)) or (is_usual and is_steep):
+        gap = np.abs(rest - value).min(initial=np.inf)
+        # Heights that differ by rounding are one.
+        is_far = rest is between and gap > _FAR * spread > 1e-9 * gap
+        if is_far or (gap > spread and (is_usual or is_steep)) or (is_usual and is_steep):
             count = measured.size - others.size
             points = f"{count} point{'s' * (count > 1)} of {number:.10g}"
             words.append(f"{points}: if they mark missing points, write nan")
