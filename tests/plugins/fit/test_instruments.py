@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -220,6 +221,23 @@ def test_segments_that_afmformats_cannot_read(
     instruments.jpk(path, recording, recording, styles=styles)
     with pytest.raises(pl.StorageError, match=rf"segments: {len(styles)}.*export each .* table"):
         read(path)
+
+
+def test_a_damaged_curve_of_an_archive(tmp_path: Path, recording: instruments.Recording) -> None:
+    """It says so by its name, and the others are read."""
+    path, given = tmp_path / "a.zip", Calibration(spring_constant=SPRING)
+    instruments.archive(path, [recording, recording])
+    with zipfile.ZipFile(path) as archive:
+        contents = {name: archive.read(name) for name in archive.namelist()}
+    first, last = (name for name, text in contents.items() if text.startswith(b"Force-Dist"))
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("damaged.csv", contents[first][:600] + b"\n1,2\n")
+        archive.writestr(last, contents[last])
+    good, damaged = read(path, given).items()
+    assert is_curve(clean(good[1]()), *SEEN)
+    assert damaged[0] == "damaged.csv"
+    with pytest.raises(pl.StorageError, match="afmformats cannot read it"):
+        damaged[1]()
 
 
 def test_a_file_that_is_replaced_is_read_again(
