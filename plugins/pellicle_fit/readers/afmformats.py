@@ -242,7 +242,7 @@ def _recordings(path: Path, values: dict[str, float], is_nt_mdt: bool) -> list[M
                     recordings += load_csv(TextIOWrapper(archive.open(name), "utf-8"), None, values)
                 except (ValueError, LookupError) as error:
                     # One that is damaged does not hide the others.
-                    recordings.append({"data": error, "metadata": {"enum": name}})
+                    recordings.append({"data": ValueError(f"{error}"), "metadata": {"enum": name}})
             return recordings
     if suffix in _JPK:
         # An archive stays open there, and would hide the file that replaces it.
