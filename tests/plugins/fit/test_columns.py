@@ -546,6 +546,26 @@ EXPORTS = {
 }
 
 
+@pytest.mark.parametrize(
+    ("signals", "columns"),
+    [
+        ("Setpoint (V)\tDefl (nm)", "Distance = extension um, Defl = deflection nm"),
+        ("Setpoint (V)\tLoad (nN)", "Distance = position um, Load = force nN"),
+        (
+            "Deflection (nm)\tForce (nN)",
+            "Distance = extension um, Force = force nN, Deflection = deflection nm",
+        ),
+    ],
+)
+def test_a_name_says_more_than_a_unit(tmp_path: Path, signals: str, columns: str) -> None:
+    """A signal in volts is no deflection beside one; a force and a deflection are both kept."""
+    lines = [f"{z}\t{f}\t{f}" for z, f in zip(Z, F, strict=True)]
+    text = "\n".join([f"Distance (um)\t{signals}", *lines])
+    (tmp_path / "a.txt").write_text(text, encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match=rf'--columns "{columns}"'):
+        curves(tmp_path / "a.txt")
+
+
 @pytest.mark.parametrize("header", EXPORTS)
 def test_one_message_asks_for_all_that_an_export_lacks(tmp_path: Path, header: str) -> None:
     """It ends with options, which read the curve once they have values."""
