@@ -9,7 +9,7 @@ import os
 import re
 import socket
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -22,6 +22,8 @@ _MARKS = {
 }
 # XML refuses these characters, but for 0x7F to 0x9F, which are errors in HTML.
 _NOT_IN_DOCUMENTS = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+_WHOLE, _FEW = re.compile(r"[-+]?\d+"), 4
+"""A whole number, and the least number of different ones that may be decimals."""
 
 
 # In a closed folder they return False, where the methods of `Path` raise before Python 3.14.
@@ -47,6 +49,26 @@ def read_text(path: Path) -> str:
     if "\0" in text:
         raise ValueError("it holds bytes that are not text")
     return text
+
+
+def splits_decimals(rows: Iterable[Sequence[str]]) -> bool:
+    """Return whether cells are in turn those before and after a decimal comma: whole numbers.
+
+    Those after it have no sign, and one length that the others have not or zeros in front.
+    """
+    lengths: tuple[set[int], set[int]] = set(), set()
+    few, is_led = set[str](), False
+    for cells in rows:
+        wholes, decimals = cells[::2], cells[1::2]
+        if len(wholes) != len(decimals) or not all(map(_WHOLE.fullmatch, wholes)):
+            return False
+        if not all(map(str.isdecimal, decimals)):
+            return False
+        is_led = is_led or any(cell[0] == "0" < cell for cell in decimals)
+        few.update(decimals if len(few) < _FEW else ())
+        for of, part in zip(lengths, (wholes, decimals), strict=True):
+            of.update(len(cell.lstrip("+-")) for cell in part)
+    return len(few) >= _FEW and (is_led or (len(lengths[1]) == 1 and lengths[0] != lengths[1]))
 
 
 def check_writable(path: Path) -> None:

@@ -31,6 +31,14 @@ def list_or_entry(entries: Any) -> BeforeValidator:
     return BeforeValidator(as_list, json_schema_input_type=entries)
 
 
+def effects_or_none(entries: Any) -> BeforeValidator:
+    """Return the annotation of a list of effects, of which "none" is the empty one."""
+    return BeforeValidator(
+        lambda value: [] if isinstance(value, str) and value == "none" else as_list(value),
+        json_schema_input_type=entries,
+    )
+
+
 def with_radius(fields: Mapping[str, Any]) -> dict[str, Any]:
     """Return fields of an indenter with half of a diameter as the radius."""
     table = dict(fields)

@@ -89,7 +89,7 @@ def test_undefined_values_are_not_a_number() -> None:
         *((f"{text}1", "is not arithmetic") for text in ("~" * 100_000, "not " * 100_000)),
         *(
             (text, "is not arithmetic")
-            for text in ("℘5", "depth * ℘0", "℮9", "ᢅ5", "e\u0301", "a·b")
+            for text in ("℘5", "depth * ℘0", "℮9", "ᢅ5", "e\u0301", "a·b", "depth # / 2")
         ),
         ("1" * 400, "cannot be evaluated|not arithmetic"),
     ],

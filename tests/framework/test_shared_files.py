@@ -4,6 +4,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
+import numpy as np
 import pytest
 
 import pellicle as pl
@@ -201,6 +202,9 @@ def test_arguments_that_are_something_else(tmp_path: Path) -> None:
         pl.ConfigError, match=r"grid: \{'points': 2\} is not a grid; .*pellicle\.Grid"
     ):
         pl.displacement([[1, 0], [0, 0]], kernel=kernel, grid={"points": 2})  # type: ignore[arg-type]
+    masked = np.ma.masked_array(np.ones((2, 2)), [[True, False], [False, False]])
+    with pytest.raises(pl.ConfigError, match="pressure: holds NaN, infinite or masked values"):
+        pl.displacement(masked, kernel=kernel, grid=grid)
     with pytest.raises(pl.ConfigError, match="study: makes this a study: use run_study"):
         pl.run(COARSE | {"study": {"vary": {"indenter.radius": [1, 2]}}}, progress=False)
     study: Any = pl.Study(run=COARSE, vary={"indenter.radius": [1, 2]})

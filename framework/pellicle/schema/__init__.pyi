@@ -7,6 +7,9 @@ from .from_file import InputPath as InputPath
 from .from_file import overridden as overridden
 from .from_file import paths_relative_to as paths_relative_to
 from .from_file import read_toml as read_toml
+from .hdf5 import fault_of_packing as fault_of_packing
+from .hdf5 import fault_of_source as fault_of_source
+from .hdf5 import measured as measured
 from .matlab import read_mat as read_mat
 from .matlab import unpacked_size as unpacked_size
 from .messages import nearest as nearest

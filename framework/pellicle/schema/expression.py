@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import operator
 import re
+import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -104,7 +105,12 @@ def evaluate(
     try:
         # Python takes letters for names that are none in a regular expression, such as ℘.
         code.encode("ascii")
-        tree = ast.parse(code, mode="eval")
+        if "#" in code:
+            raise SyntaxError("a comment would hide what follows")
+        with warnings.catch_warnings():
+            # Such as of 1or 2, which Python reads as 1 or 2.
+            warnings.simplefilter("ignore", SyntaxWarning)
+            tree = ast.parse(code, mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise ConfigError(f"{shown(text)} is not arithmetic; write it with {_ALLOWED}") from None
 

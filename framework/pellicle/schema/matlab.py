@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from .hdf5 import fault_of_source
+
 _COMPRESSED = 15
 """Type of a compressed variable of version 5."""
 
@@ -87,8 +89,8 @@ def _read_hdf5(path: Path) -> dict[str, Any]:
         if isinstance(item, h5py.Group):
             entered.add(item)
             return {str(name): content(entry) for name, entry in item.items()}
-        if item.is_virtual or item.external:
-            raise ValueError(f"it takes {item.name} from other files")
+        if reason := fault_of_source(item):
+            raise ValueError(f"it {reason}")
         if item.dtype == h5py.ref_dtype:
             entered.add(item)
             references = np.atleast_1d(item[()]).ravel()

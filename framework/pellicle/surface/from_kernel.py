@@ -246,8 +246,10 @@ def displacement(pressure: Array, *, kernel: HasSymbol, grid: Grid) -> Array:
             f"{grid.shape}, the grid's",
             "pressure",
         )
-    if not np.isfinite(tractions).all():
-        raise ConfigError("holds NaN or infinite values; give finite ones in Pa", "pressure")
+    if np.ma.is_masked(pressure) or not np.isfinite(tractions).all():
+        raise ConfigError(
+            "holds NaN, infinite or masked values; give finite ones in Pa", "pressure"
+        )
     operator = operator_of(kernel, grid)
     warn_of_cells(partial(along_axes, operator.symbol), grid)
     return operator(tractions.astype(np.float64))

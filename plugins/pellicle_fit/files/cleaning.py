@@ -49,9 +49,11 @@ def clean(
                 f"has {values.size} values and position {z.size}; give one for each position", name
             )
     messages, finite = [*curve.messages], np.isfinite(z) & np.isfinite(f)
-    if missing := int(np.sum(~finite)):
+    missing = int(np.sum(~finite))
+    if missing:
         messages.append(Note(f"{missing} of {z.size} rows hold no finite number and were left out"))
-    _check_count(int(finite.sum()), "the curve")
+    which = f"without {missing} rows that hold no finite number, the curve"
+    _check_count(int(finite.sum()), which if missing else "the curve")
     for name, values, unit in (("position", z, "m"), ("force", f, "N"), ("time", t, "s")):
         if values is not None:
             _check_size(name, values, unit)
@@ -132,6 +134,8 @@ def _spans(number: NDArray[np.intp], rows: NDArray[np.intp]) -> str:
 
 
 def _array(values: ArrayLike, name: str) -> Array:
+    if isinstance(values, np.ma.MaskedArray):
+        values = np.ma.filled(values.astype(float), np.nan)
     with suppress(TypeError, ValueError, OverflowError), np.errstate(over="ignore"):
         if not np.iscomplexobj(values) and (array := np.asarray(values, dtype=float)).ndim == 1:
             return array

@@ -14,6 +14,8 @@ from pellicle.errors import ConfigError
 _WHOLE = re.compile(r"[-+]?[1-9]\d{0,2}")
 _GROUPED = re.compile(rf"{_WHOLE.pattern}(?:,\d{{3}})+")
 """A number whose thousands may be separated by commas."""
+_SPACED = re.compile(r"[-+]?\d{1,3}([ '’\u00a0\u202f]\d{3})+([.,]\d*)?")
+"""A number whose thousands are separated by other signs."""
 _AMOUNT = re.compile(r"([-+]?[\d.,]+(?:[eE][-+]?\d+)?)(\s*[^\d\s]*)")
 """A number, and perhaps its unit."""
 
@@ -38,9 +40,9 @@ def refuse_wide(wide: Sequence[Sequence[str]], named: int, path: Path) -> None:
     for row in wide:
         raise ConfigError(
             f"{path}: has {len(row)} numbers below {named} names ({','.join(row)}), as where "
-            "commas are decimal and separate columns too; export it with semicolons, tabs or "
-            "decimal points, or choose columns of a curve by their numbers (--columns on the "
-            "command line)"
+            "commas are decimal and separate columns too, or rows are numbered; export it with "
+            "semicolons, tabs or decimal points, name each column, or choose columns of a curve by "
+            "their numbers (--columns on the command line)"
         )
 
 
@@ -65,6 +67,8 @@ def numbers(cells: list[str], decimals: list[str], separator: str, column: str) 
     A comma in them is decimal, or refused, as where commas separate columns.
     """
     _check_commas(cells, decimals, column, is_separator=separator == ",")
+    for cell in filter(_SPACED.fullmatch, cells):
+        raise ConfigError(f"{column} has {cell!r}; export it without separators of thousands")
     return np.array([float(c.replace(",", ".")) if is_number(c) else np.nan for c in cells])
 
 

@@ -24,8 +24,8 @@ UNKNOWN = "<column>"
 SHOWN = 12
 """Largest number of columns that a message names."""
 _ROLES = {
-    "time": "time",
-    "force": "force|load|^f$",
+    "time": "time|zeit|temps|tempo|tiempo",
+    "force": "force|load|kraft|forza|fuerza|^f$",
     "deflection": "defl|bending",
     "position": "tip|separation|indent|depth",
     "height": r"height|piezo|ramp|sensor|snsr|exten|position|distance|displacement|(^|[\W_])z",
@@ -93,16 +93,20 @@ def guessed(heads: Sequence[Column], known: Columns) -> dict[str, Column]:
     Those that are ``known`` come first.
     """
     columns = [(role, column.name, column) for role, column in known.items()]
+    others: list[tuple[str, str, Column]] = []
     called = Counter(text for h in heads for text in {h.name.lower(), h.text.lower()})
     for index, head in enumerate(heads):
         names = (t for t in (head.name, head.text) if called[plain(t).lower()] == 1)
         name = next((text for text in names if not _UNSAFE.search(text)), str(index + 1))
         words = (role for role, of in _ROLES.items() if re.search(of, head.name.lower()))
-        columns.append((next(words, _BY_UNIT.get(si_unit(head.unit), "")), name, head))
+        word, of_unit = next(words, ""), _BY_UNIT.get(si_unit(head.unit), "")
+        (columns if word else others).append((word or of_unit, name, head))
     guesses: dict[str, tuple[str, Column]] = {}
-    for role, name, head in columns:
+    for role, name, head in columns + others:
         is_signal = role in ("force", "deflection")
         kind = "signal" if is_signal else role if role in ("", "time") else "place"
+        # A force and a deflection tell the spring constant.
+        kind = role if is_signal and {"force", "deflection"} <= known.keys() else kind
         allowed = "mNVA" if is_signal else UNITS.get(role, "m")
         units = [head.unit, *reversed(re.split(r"[\W_]+", head.name))]
         unit = next((u for u in units if si_unit(u) in [*allowed]), "")
@@ -114,7 +118,8 @@ def guessed(heads: Sequence[Column], known: Columns) -> dict[str, Column]:
             role = "force" if si_unit(unit) == "N" else "deflection"
         if kind and (unit or kind != "time" or role in known):
             guesses.setdefault(kind, (role, Column("", name, unit)))
-    signal, _ = guesses.setdefault("signal", ("deflection", Column("", UNKNOWN, "")))
+    unknown = "deflection", Column("", UNKNOWN, "")
+    signal, _ = guesses.get("deflection") or guesses.setdefault("signal", unknown)
     role, place = guesses.setdefault("place", ("height", Column("", UNKNOWN, "")))
     if role == "height" and role not in known and place.name != UNKNOWN:
         # Most heights fall as the tip goes down, and most others grow; which it is shows in a fit.

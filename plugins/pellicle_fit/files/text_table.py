@@ -10,7 +10,7 @@ from itertools import chain
 from pathlib import Path
 
 from pellicle.errors import ConfigError, StorageError
-from pellicle.files import read_text
+from pellicle.files import read_text, splits_decimals
 from pellicle.memory import require_for
 
 from .columns import EXAMPLE, NAMES, Calibration, Column, Columns, is_curve, plain, si_unit
@@ -47,7 +47,8 @@ def _lines(path: Path) -> tuple[list[str], list[int]]:
     with suppress(OSError):
         require_for(_PER_BYTE * path.stat().st_size, *purpose)
     try:
-        text = read_text(path)
+        # Some programs write minus signs of their own.
+        text = read_text(path).replace("\N{MINUS SIGN}", "-")
     except OSError as error:
         raise StorageError(f"{path}: cannot be read ({error.strerror or error})") from None
     except ValueError as error:
@@ -198,7 +199,9 @@ def _heads(line: str) -> list[Column]:
         line = match[2]
     line = line.lstrip("".join(_COMMENT))
     separator = _separator(line)
-    return _named(_WORD.findall(line) if separator == " " else _split([line], separator)[0])
+    return _named(
+        _WORD.findall(line.replace('"', "")) if separator == " " else _split([line], separator)[0]
+    )
 
 
 def _named(cells: Sequence[str]) -> list[Column]:
@@ -215,12 +218,15 @@ def _separator(line: str) -> str:
     line = line.strip()
     if "\t" in line or ";" in line:
         return max("\t;", key=line.count)
-    return "," if "," in line else " "
+    # Between blanks, commas are decimal.
+    words = line.split() if re.search(r"\d,\d", line) else []
+    is_decimal = len(words) > 1 and all(is_number(w) and w.strip(",") == w for w in words)
+    return "," if "," in line and not is_decimal else " "
 
 
 def _split(lines: Sequence[str], separator: str) -> list[list[str]]:
     if separator == " ":
-        return [line.split() for line in lines]
+        return [line.replace('"', "").split() for line in lines]
     return list(csv.reader(lines, delimiter=separator))
 
 
@@ -259,10 +265,16 @@ def read_table(
         if _key(head.name) in _CONSTANTS and len({row[place] for row in rows}) == 1
     ]
     names = [head.name.lower() for head in heads]
-    if not mapped and separator == "," and is_curve({*names}):
-        named = sum(bool(head.text) for head in heads)
-        wide = [row for row in rows if len(row) > named and all(map(is_number, row))]
+    named = max((place for place, head in enumerate(heads, 1) if head.text), default=0)
+    if named and (not all(map(str.isdecimal, mapped)) if mapped else is_curve({*names})):
+        filled = ([cell for cell in row if cell.strip()] for row in rows)
+        wide = [row for row in filled if len(row) > named and all(map(is_number, row))]
         refuse_wide(wide, named, path)
+    if separator == "," and not named and len(heads) > len(mapped) and splits_decimals(rows):
+        raise ConfigError(
+            f"{path}: has whole numbers alone, each second of which looks like decimals: commas "
+            "may separate its columns and its decimals too; export it with decimal points"
+        )
     known = mapped or {name: name for name in names if name in NAMES}
     if is_export and not mapped:
         # The position of the tip is that of a height, and time, unlike seriesTime, begins anew.

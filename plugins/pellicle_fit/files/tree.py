@@ -14,7 +14,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, StorageError
 from pellicle.memory import require_for
-from pellicle.schema import read_mat, unpacked_size
+from pellicle.schema import fault_of_packing, fault_of_source, measured, read_mat, unpacked_size
 
 from .columns import NAMES, Column, Columns
 from .missing import SHOWN
@@ -76,6 +76,7 @@ def _require(needed: float, path: Path) -> None:
 def _unit(array: Any) -> str:
     attributes = getattr(array, "attrs", {})
     unit = attributes.get("units", attributes.get("unit", ""))
+    unit = unit.item() if isinstance(unit, np.ndarray) and unit.size == 1 else unit
     return unit.decode() if isinstance(unit, bytes) else str(unit)
 
 
@@ -100,9 +101,11 @@ def _curves(
             match = named.fullmatch(name)
             if match is None or not (mapped or array.ndim == 1):
                 continue
+            if not is_matlab and (reason := fault_of_source(array) or fault_of_packing(array)):
+                raise ConfigError(f"{file}: {reason}")
             total += array.size
             _require(8.0 * total + _BYTES_PER_ROW * max(array.shape, default=1), file)
-            values: Array = np.asarray(array, dtype=float)
+            values: Array = np.asarray(array if is_matlab else measured(array), dtype=float)
             rows = {"": values.ravel()}
             if values.squeeze().ndim > 1:
                 values = np.moveaxis(values, 0, -1) if is_matlab else values

@@ -236,8 +236,17 @@ def _recordings(path: Path, values: dict[str, float], is_nt_mdt: bool) -> list[M
         # The loader of archives fails for places on a line, and warns of 10 before 2.
         with zipfile.ZipFile(path) as archive:
             names = [n for n in archive.namelist() if _WORKSHOP in archive.open(n).read(_BEGINNING)]
-            texts = (TextIOWrapper(archive.open(name), "utf-8") for name in sorted(names))
-            return [recording for text in texts for recording in load_csv(text, None, values)]
+            recordings: list[Mapping[str, Any]] = []
+            for name in sorted(names):
+                try:
+                    recordings += load_csv(TextIOWrapper(archive.open(name), "utf-8"), None, values)
+                except (ValueError, LookupError) as error:
+                    # One that is damaged does not hide the others.
+                    recordings.append({"data": ValueError(f"{error}"), "metadata": {"enum": name}})
+            return recordings
+    if suffix in _JPK:
+        # An archive stays open there, and would hide the file that replaces it.
+        formats.fmt_jpk.jpk_reader.ArchiveCache.open_archives.pop(path, None)
     recipes = formats.formats_by_suffix[suffix]
     recipe = formats.recipe_ntmdt_txt if is_nt_mdt else formats.recipe_chiaro_txt
     loader = recipe["loader"] if suffix == ".txt" else recipes[0].loader
@@ -281,6 +290,8 @@ def _curve(
 ) -> Measurement:
     with _errors(path, is_nt_mdt):
         data, metadata = recording["data"], recording["metadata"]
+        if isinstance(data, Exception):
+            raise data
         place = next((name for name in _PLACES if name in data), "")
         names = {_PLACES.get(place, ""): place, "force": "force", "time": "time"}
         columns = {
@@ -290,7 +301,9 @@ def _curve(
         }
         if tip := columns.get("position"):
             columns["position"] = tip._replace(values=-tip.values)
-        constant = metadata.get("spring constant", calibration.spring_constant)
+        constant = metadata.get("spring constant")
+        if constant is None or (isinstance(constant, float) and not 0 < constant < np.inf):
+            constant = calibration.spring_constant
         own = Calibration(spring_constant=constant, speed=calibration.speed)
         if lacks := lacking(columns, own):
             raise MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in lacks})

@@ -11,6 +11,7 @@ from typing import Any
 from pellicle import memory
 from pellicle.errors import ConfigError
 from pellicle.files import is_file
+from pellicle.schema import fault_of_source
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
 """The first bytes of an HDF5 file."""
@@ -52,9 +53,6 @@ def datasets(path: Path) -> Iterator[dict[str, Any]]:
     with h5py.File(path, "r") as file:
         file.visititems(lambda name, item: items.update({name: item}))
         arrays = {name: item for name, item in items.items() if isinstance(item, h5py.Dataset)}
-        for name, array in arrays.items():
-            if array.is_virtual or array.external:
-                raise ConfigError(
-                    f"{path} takes {name} from other files; copy it into one (h5repack)", "path"
-                )
+        for reason in filter(None, map(fault_of_source, arrays.values())):
+            raise ConfigError(f"{path} {reason}", "path")
         yield arrays

@@ -30,27 +30,36 @@ HeightUnit = Annotated[Length, BeforeValidator(one_of_it, json_schema_input_type
 
 _MARKS = 999, 9999, 99999, 999.25, 32767, 32768, 65535, 2147483647, 2147483648, 4294967295
 """Numbers that, with either sign, programs write for a missing point and a surface may have."""
+_FEWEST, _FAR = 30, 2.0
+"""Number of heights between the lowest and the highest that tell how far heights differ, and how
+many times farther a number is that marks missing points though it is not usual."""
 
 
 def marks_in(heights: Array, unit: float, *, is_steep: bool = False) -> list[str]:
     """Return what to do with the lowest and highest heights [m] if they mark missing points.
 
-    ``unit`` is the length [m] of 1 in the file. A mark has a usual number and is farther from all
-    other heights than these are from each other; on a surface that is too steep one of both is
-    enough.
+    ``unit`` is the length [m] of 1 in the file. A mark is farther from all heights between the
+    lowest and the highest than these are from each other, twice as far if its number is not usual;
+    on a surface that is too steep a usual number, or any that is as far, is enough.
     """
     measured = heights[np.isfinite(heights)]
+    ends = np.unique([measured.min(), measured.max()]) if measured.size else measured
     words = []
-    for value in np.unique([measured.min(), measured.max()]) if measured.size else ():
+    for value in ends:
         number = value / unit
         is_usual = np.isclose(abs(number), _MARKS, rtol=1e-6, atol=0).any()
-        if is_usual or is_steep:
-            others = measured[measured != value]
-            is_apart = others.size and np.abs(others - value).min() > np.ptp(others)
-            if is_apart or (is_usual and is_steep):
-                count = measured.size - others.size
-                points = f"{count} point{'s' * (count > 1)} of {number:.10g}"
-                words.append(f"{points}: if they mark missing points, write nan")
+        others = measured[measured != value]
+        # Both ends may be marks, as of a converter that saturates.
+        between = others[~np.isin(others, ends)]
+        rest = between if between.size >= _FEWEST else others
+        spread = np.ptp(rest) if rest.size else np.inf
+        gap = np.abs(rest - value).min(initial=np.inf)
+        # Heights that differ by rounding are one.
+        is_far = rest is between and gap > _FAR * spread > 1e-9 * gap
+        if is_far or (gap > spread and (is_usual or is_steep)) or (is_usual and is_steep):
+            count = measured.size - others.size
+            points = f"{count} point{'s' * (count > 1)} of {number:.10g}"
+            words.append(f"{points}: if they mark missing points, write nan")
     return words
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
-from pellicle.files import read_text
+from pellicle.files import read_text, splits_decimals
 
 from .file_checks import require_memory
 
@@ -51,7 +51,8 @@ def text_in(path: Path) -> str:
     """Return the text of a file if there is memory for it."""
     size = path.stat().st_size
     require_memory(3.0 * size, f"{path}, a file of {size / 1e9:.3g} GB,")
-    return read_text(path)
+    # Some programs write minus signs of their own.
+    return read_text(path).replace("\N{MINUS SIGN}", "-")
 
 
 def read_tables(text: str, path: Path) -> dict[str, TextTable]:
@@ -71,6 +72,12 @@ def read_tables(text: str, path: Path) -> dict[str, TextTable]:
     if not any(map(str.strip, rows.values())):
         return {}
     widths = {number: len(row.split()) for number, row in rows.items()}
+    if mark == "," and splits_decimals(map(str.split, rows.values())):
+        raise ConfigError(
+            f"{path} has whole numbers alone, each second of which looks like decimals: commas may "
+            "separate its columns and its decimals too; export it with decimal points",
+            "path",
+        )
     channels: dict[str, list[int]] = {}
     texts = []
     name = "Default"

@@ -139,7 +139,7 @@ def _require_whole(reader: Any, path: Path) -> None:
             steps = np.diff(np.ma.filled(variable[...], np.nan))
             # A length may lack the last pitch.
             pitches = [float(length) / n for n in (steps.size + 1, max(1, steps.size))]
-            is_whole &= any(np.allclose(steps, pitch, rtol=0.05, atol=0) for pitch in pitches)
+            is_whole &= any(np.allclose(steps, pitch, rtol=1e-3, atol=0) for pitch in pitches)
     if not is_whole:
         raise ConfigError(
             f"{path} is a part of a map, or turned: its coordinates x, y are not those of the size "

@@ -4,6 +4,7 @@ import re
 import sys
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -196,6 +197,72 @@ def test_decimal_commas_between_commas_are_refused(tmp_path: Path) -> None:
     assert curves(path)[""].force == pytest.approx([2.7e-9, 2.9e-9])
 
 
+SHIFTED = {
+    "comma": (",", "Z [um],F [nN]", "Z = position, F = force"),
+    "semicolon": (";", "position [um];force [nN]", None),
+    "tab": ("\t", "Z\tF", "Z = position um, F = force nN"),
+    "blank": (" ", "position [um] force [nN]", None),
+    "quoted names": (" ", '"position [um]" "force [nN]"', None),
+}
+
+
+@pytest.mark.parametrize("kind", SHIFTED)
+def test_rows_that_have_a_number_in_front_are_refused(tmp_path: Path, kind: str) -> None:
+    """Under a header without its name each column would be taken for the one before."""
+    mark, header, columns = SHIFTED[kind]
+    lines = [f"{n}{mark}{row}" for n, row in enumerate(rows(mark).splitlines())]
+    path = tmp_path / "a.txt"
+    path.write_text("\n".join([header, *lines]), encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match="has 3 numbers below 2 names"):
+        curves(path, columns)
+    path.write_text("\n".join([mark + header, *lines]), encoding="utf-8")
+    if mark != " ":
+        assert is_the_curve(curves(path, columns)[""])
+
+
+@pytest.mark.parametrize("columns", [None, "Z = position um, F = force nN"])
+def test_commas_that_are_both_are_refused(tmp_path: Path, columns: str | None) -> None:
+    """Rows such as 1,5,0,25 under two names are no numbers, whoever names them."""
+    header = "Z [um],F [nN]" if columns else "position [um],force [nN]"
+    (tmp_path / "a.csv").write_text(f"{header}\n{rows(comma=True)}", encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match="has 4 numbers below 2 names"):
+        curves(tmp_path / "a.csv", columns)
+    text = "9,5,0,2\n10,6,0,7\n11,1,1,9\n12,3,2,4\n"
+    (tmp_path / "b.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match="each second of which looks like decimals"):
+        curves(tmp_path / "b.csv", BY_NUMBER)
+    (tmp_path / "b.csv").write_text(text.replace(",", ";"), encoding="utf-8")
+    assert curves(tmp_path / "b.csv", BY_NUMBER)[""].position[0] == pytest.approx(9e-6)
+
+
+@pytest.mark.parametrize("columns", [None, BY_NUMBER])
+def test_signs_of_other_countries(tmp_path: Path, columns: str | None) -> None:
+    """Commas between blanks are decimal, and a typographer's minus is one."""
+    lines = [f"{-z:.4f} {f:.4f}" for z, f in zip(Z, F, strict=True)]
+    text = "\n".join(lines if columns else ["position [um] force [nN]", *lines])
+    path = tmp_path / "a.txt"
+    for other in (text.replace(".", ","), text.replace("-", "\N{MINUS SIGN}")):
+        path.write_text(other, encoding="utf-8")
+        assert curves(path, columns)[""].position == pytest.approx(-1e-6 * Z)
+
+
+@pytest.mark.parametrize("mark", [" ", "'", "\u00a0", "\u202f", "’"])
+def test_other_separators_of_thousands_are_refused(tmp_path: Path, mark: str) -> None:
+    """Rows of large numbers would be left out."""
+    path = tmp_path / "a.csv"
+    path.write_text(f"position [nm];force [nN]\n999,5;1\n1{mark}000,5;2\n", encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match="without separators of thousands"):
+        curves(path)
+
+
+def test_rows_without_a_number_are_counted(tmp_path: Path) -> None:
+    """A curve without any number says how many rows hold none."""
+    path = tmp_path / "a.csv"
+    path.write_text("position [um],force [nN]\n" + "1.5D0,2.5D0\n" * 9, encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match="without 8 rows that hold no finite number"):
+        clean(curves(path)[""])
+
+
 def test_list_of_files_without_numbers(tmp_path: Path) -> None:
     """Its rows are not those of units, which have no number either."""
     for name in "ab":
@@ -376,7 +443,9 @@ def test_a_unit_that_contradicts_the_header(tmp_path: Path) -> None:
         curves(tmp_path / "a.h5", "z = position nm, f = force nN")
 
 
-@pytest.mark.parametrize("place", ["Z [s]", "Sensor (ms)", "Ramp_s", "Extension [V]"])
+@pytest.mark.parametrize(
+    "place", ["Z [s]", "Sensor (ms)", "Ramp_s", "Extension [V]", "Zeit", "Temps", "tiempo"]
+)
 def test_a_column_of_another_unit_is_not_offered(tmp_path: Path, place: str) -> None:
     """A length is not in seconds, whatever its name is."""
     (tmp_path / "a.txt").write_text(f"{place}\tDefl [nm]\n{rows(chr(9))}")
@@ -499,6 +568,26 @@ EXPORTS = {
 }
 
 
+@pytest.mark.parametrize(
+    ("signals", "columns"),
+    [
+        ("Setpoint (V)\tDefl (nm)", "Distance = extension um, Defl = deflection nm"),
+        ("Setpoint (V)\tLoad (nN)", "Distance = position um, Load = force nN"),
+        (
+            "Deflection (nm)\tForce (nN)",
+            "Distance = extension um, Force = force nN, Deflection = deflection nm",
+        ),
+    ],
+)
+def test_a_name_says_more_than_a_unit(tmp_path: Path, signals: str, columns: str) -> None:
+    """A signal in volts is no deflection beside one; a force and a deflection are both kept."""
+    lines = [f"{z}\t{f}\t{f}" for z, f in zip(Z, F, strict=True)]
+    text = "\n".join([f"Distance (um)\t{signals}", *lines])
+    (tmp_path / "a.txt").write_text(text, encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match=rf'--columns "{columns}"'):
+        curves(tmp_path / "a.txt")
+
+
 @pytest.mark.parametrize("header", EXPORTS)
 def test_one_message_asks_for_all_that_an_export_lacks(tmp_path: Path, header: str) -> None:
     """It ends with options, which read the curve once they have values."""
@@ -550,6 +639,37 @@ def test_hdf5_by_path(tmp_path: Path, write: Callable[[Path], str]) -> None:
     both = curves(path, write(path))
     assert len(both) == 2
     assert all(map(is_the_curve, both.values()))
+
+
+@pytest.mark.parametrize("kind", ["virtual", "external", "scale_factor", "add_offset"])
+def test_numbers_that_are_not_those_of_the_file_are_refused(tmp_path: Path, kind: str) -> None:
+    """Of another file, which no hash covers, or packed as NetCDF packs them."""
+    path = tmp_path / "a.h5"
+    with h5py.File(path, "w") as file:
+        file["position"] = Z
+        if kind == "virtual":
+            layout = h5py.VirtualLayout(F.shape, F.dtype)
+            layout[:] = h5py.VirtualSource(tmp_path / "b.h5", "force", F.shape)
+            file.create_virtual_dataset("force", layout)
+        elif kind == "external":
+            file.create_dataset("force", F.shape, F.dtype, external=tmp_path / "b.raw")
+        else:
+            file["force"] = F
+            file["force"].attrs[kind] = 0.5
+    with pytest.raises(pl.ConfigError, match=r"a\.h5: (takes|has) force (from other|packed)"):
+        curves(path, "position = position um, force = force nN")
+
+
+def test_what_an_attribute_says_of_numbers(tmp_path: Path) -> None:
+    """A unit may be an array of one, and a number stands for missing ones."""
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["position"], file["force"] = Z, np.where(Z == 3.5, -32768.0, F)
+        file["position"].attrs["units"] = np.array([b"um"])
+        file["force"].attrs["units"] = "nN"
+        file["force"].attrs["_FillValue"] = np.array([-32768.0])
+    curve = curves(tmp_path / "a.h5")[""]
+    assert is_the_curve(replace(curve, force=np.where(Z == 3.5, 1e-9 * F, curve.force)))
+    assert np.array_equal(np.isnan(curve.force), Z == 3.5)
 
 
 def test_paths_that_lead_nowhere(tmp_path: Path) -> None:

@@ -145,6 +145,13 @@ def test_options_of_the_question(cli: Cli) -> None:
     assert configuration["uncertainty"] == {"radius": 0.03, "sensitivity": 0.05}
 
 
+def test_none_is_a_list_without_effects() -> None:
+    """What the command takes for no effect is one in Python and in files, too."""
+    fields = {"curves": "a.csv", "indenter": "sphere", "radius": "5 um"}
+    config = pl.FitConfig.merged(**fields, model="none", rivals="none")
+    assert (config.model, config.rivals) == ((), ())
+
+
 def test_schema() -> None:
     """The JSON schema accepts the file's tables and refuses unknown keys."""
     validator = Draft202012Validator(pl.FitConfig.model_json_schema())

@@ -146,6 +146,16 @@ BAD: list[tuple[str, Callable[[Array, Array], tuple[Array, Array]]]] = [
 ]
 
 
+def test_masked_rows_are_left_out() -> None:
+    """What a mask covers is no measured value, such as the marks of a NetCDF file."""
+    position = np.linspace(-1e-6, 1e-6, 100)
+    force = np.maximum(position, 0.0) ** 1.5
+    masked = np.ma.masked_array(np.where(position > 0.9e-6, -32768.0, force), position > 0.9e-6)
+    curve = clean(Measurement(position, masked))
+    assert np.array_equal(curve.force, force[:95])
+    assert "5 of 100 rows hold no finite number and were left out" in curve.messages
+
+
 @pytest.mark.parametrize(("words", "change"), BAD)
 def test_bad_curves(words: str, change: Callable[[Array, Array], tuple[Array, Array]]) -> None:
     """A curve that cannot be fitted is refused in words."""

@@ -1,6 +1,7 @@
 """Curves in the formats of instruments, and tables of what a cantilever sees."""
 
 import sys
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -217,6 +218,49 @@ def test_segments_that_afmformats_cannot_read(
     instruments.jpk(path, recording, recording, styles=styles)
     with pytest.raises(pl.StorageError, match=rf"segments: {len(styles)}.*export each .* table"):
         read(path)
+
+
+def test_a_damaged_curve_of_an_archive(tmp_path: Path, recording: instruments.Recording) -> None:
+    """It says so by its name, and the others are read."""
+    path, given = tmp_path / "a.zip", Calibration(spring_constant=SPRING)
+    instruments.archive(path, [recording, recording])
+    with zipfile.ZipFile(path) as archive:
+        contents = {name: archive.read(name) for name in archive.namelist()}
+    first, last = (name for name, text in contents.items() if text.startswith(b"Force-Dist"))
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("damaged.csv", contents[first][:600] + b"\n1,2\n")
+        archive.writestr(last, contents[last])
+    good, damaged = read(path, given).items()
+    assert is_curve(clean(good[1]()), *SEEN)
+    assert damaged[0] == "damaged.csv"
+    with pytest.raises(pl.StorageError, match="afmformats cannot read it"):
+        damaged[1]()
+
+
+def test_a_file_that_is_replaced_is_read_again(
+    tmp_path: Path, recording: instruments.Recording
+) -> None:
+    """An archive of JPK stays open in afmformats, which would go on with the old one."""
+    path = tmp_path / "curve.jpk-force"
+    for factor in (1.0, 2.0):
+        new = tmp_path / "new"
+        instruments.jpk(new, replace(recording, force=factor * recording.force))
+        new.replace(path)
+        assert only(path).force == pytest.approx(factor * SEEN[1], abs=1e-6 * np.ptp(SEEN[1]))
+
+
+@pytest.mark.parametrize("constant", [np.nan, 0.0, -0.05])
+def test_a_spring_constant_that_is_none_is_replaced(
+    tmp_path: Path, recording: instruments.Recording, constant: float
+) -> None:
+    """Exports of curves that were not calibrated hold such numbers: asked for, then read."""
+    path = tmp_path / "export.h5"
+    instruments.hdf5(path, recording)
+    with h5py.File(path, "a") as file:
+        file["0"].attrs["spring constant"] = constant
+    with pytest.raises(pl.ConfigError, match="missing: spring_constant"):
+        only(path)
+    assert is_curve(only(path, GIVEN.model_copy(update={"sensitivity": None})), *SEEN)
 
 
 def test_damaged_file(tmp_path: Path, recording: instruments.Recording) -> None:

@@ -98,6 +98,32 @@ def test_a_usual_mark_is_named(name: str, mark: float, count: int, is_steep: boo
         pl.indenter("heights", values=heights, unit="1 nm")
 
 
+@FEW
+@given(
+    name=st.sampled_from(sorted(WRITERS)),
+    marks=st.sampled_from([(0,), (255,), (-1234.5,), (32767, -32768), (77, -66), (9999, -9999)]),
+    count=st.integers(1, 3),
+)
+def test_heights_apart_from_all_others_are_named(
+    name: str, marks: tuple[float, ...], count: int
+) -> None:
+    """What a file marks missing points with needs no usual number, and may be at both ends."""
+    heights = ROUGH + 30
+    for number, mark in enumerate(marks):
+        heights.flat[10 + 9 * number : 10 + 9 * number + count] = mark
+    _, said = _topography(name, heights, unit="1 pm")
+    (text,) = said
+    for mark in marks:
+        assert f"{count} point{'s' * (count > 1)} of {mark:.10g}: if they mark" in text
+
+
+def test_a_pattern_of_two_heights_has_no_marks() -> None:
+    """Neither height of a pattern is one, nor is a tip above rough heights."""
+    bump = 30 * np.exp(-((np.arange(9)[:, None] - 4) ** 2 + (np.arange(7) - 3) ** 2) / 4)
+    for heights in (np.where(ROUGH > 0, 0.0, 1.0), ROUGH + bump):
+        assert not _topography("a.txt", heights, unit="1 pm")[1]
+
+
 def test_a_mark_in_another_unit_is_named_where_it_is_steep() -> None:
     """Of a file in metres, in which -9999 nm are no usual number, what lies apart is named."""
     heights = 1e-9 * ROUGH
@@ -120,6 +146,49 @@ def test_an_array_beyond_any_surface_is_refused(value: float, tmp_path: Path) ->
     for fields in ({"values": heights}, {"path": tmp_path / "a.txt"}):
         with pytest.raises(pl.ConfigError, match=r"(the array|a\.txt) holds \d+ .*beyond any surf"):
             pl.indenter("heights", unit="1 um", **fields)
+
+
+@pytest.mark.parametrize("name", ["scale_factor", "add_offset"])
+def test_packed_numbers_are_refused(tmp_path: Path, name: str) -> None:
+    """Numbers of a NetCDF that an attribute scales are no heights: they were a thousandfold."""
+    with h5py.File(tmp_path / "a.nc", "w") as file:
+        file["z"] = np.round(1e3 * ROUGH).astype("i2")
+        file["z"].attrs[name] = 1e-3
+    with pytest.raises(pl.ConfigError, match=f"has z packed by its attribute {name}"):
+        pl.indenter("heights", path=tmp_path / "a.nc", unit="1 um")
+    with h5py.File(tmp_path / "a.nc", "a") as file:
+        del file["z"].attrs[name]
+        file["z"].attrs["_FillValue"] = file["z"][:1, 0]
+    with pytest.raises(pl.ConfigError, match="holds 1 NaN or infinite heights"):
+        pl.indenter("heights", path=tmp_path / "a.nc", unit="1 um")
+
+
+@pytest.mark.parametrize("digits", [1, 2, 3])
+def test_commas_that_are_both_are_refused(tmp_path: Path, digits: int) -> None:
+    """Rows such as 12,5,13,7 were taken for four heights, which need not be steep."""
+    text = "\n".join(",".join(f"{10 * h:.{digits}f}".replace(".", ",") for h in r) for r in ROUGH.T)
+    (tmp_path / "a.txt").write_text(text, encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match="may separate its columns and its decimals"):
+        pl.indenter("topography", path=tmp_path / "a.txt", **SCALE)
+    whole = np.round(1e2 * ROUGH)
+    np.savetxt(tmp_path / "a.txt", whole.T, fmt="%d", delimiter=",")
+    scan = pl.indenter("topography", path=tmp_path / "a.txt", level="none", **SCALE)
+    profile = scan.profile(*GRID.coordinates())
+    assert profile == pytest.approx(1e-9 * (whole - whole.max()), abs=1e-12)
+
+
+def test_a_minus_of_typographers_is_one(tmp_path: Path) -> None:
+    """Some programs write one."""
+    _text(path := tmp_path / "a.txt", ROUGH)
+    minus = path.read_text(encoding="utf-8").replace("-", "\N{MINUS SIGN}")
+    (tmp_path / "b.txt").write_text(minus.replace("e\N{MINUS SIGN}", "e-"), encoding="utf-8")
+    profiles = [
+        pl.indenter("topography", path=tmp_path / f"{name}.txt", **SCALE).profile(
+            *GRID.coordinates()
+        )
+        for name in "ab"
+    ]
+    assert np.array_equal(profiles[0], profiles[1])
 
 
 # Formats and kinds
@@ -229,12 +298,18 @@ CUTS: dict[str, Callable[[Any], Any]] = {
 }
 
 
-def _netcdf(path: Path, cut: Callable[[Any], Any], axis: int, order: str = "xy") -> None:
-    """Write a part of 16 × 12 points as SurfaceTopography writes the whole."""
-    heights = 0.1 * np.random.default_rng(1).standard_normal((16, 12))
+def _netcdf(
+    path: Path,
+    cut: Callable[[Any], Any],
+    axis: int,
+    order: str = "xy",
+    shape: tuple[int, int] = (16, 12),
+) -> None:
+    """Write a part of a map as SurfaceTopography writes the whole."""
+    heights = 0.1 * np.random.default_rng(1).standard_normal(shape)
     heights = np.moveaxis(cut(np.moveaxis(heights, axis, 0)), 0, axis)
     with netcdf_file(path, "w", version=2) as file:
-        for name, n, number, length in zip("xy", heights.shape, (16, 12), (8.0, 6.0), strict=True):
+        for name, n, number, length in zip("xy", heights.shape, shape, (8.0, 6.0), strict=True):
             file.createDimension(name, n)
             points = file.createVariable(name, "f8", (name,))
             whole = np.arange(number) / number * length
@@ -252,6 +327,9 @@ def test_a_part_of_a_netcdf_map_is_not_stretched(cut: str, axis: int, tmp_path: 
     path = tmp_path / "a.nc"
     _netcdf(path, CUTS[cut], axis)
     with pytest.raises(pl.ConfigError, match=r"^path: .*a\.nc is a part of a map, or turned"):
+        pl.indenter("topography", path=path)
+    _netcdf(path, lambda a: a[:-1], axis, shape=(160, 120))
+    with pytest.raises(pl.ConfigError, match="is a part of a map"):
         pl.indenter("topography", path=path)
     _netcdf(path, lambda a: a[::2], axis)
     scan = pl.indenter("topography", path=path)
