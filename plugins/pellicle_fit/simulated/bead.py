@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from pellicle import registry
-from pellicle.components import HasForceCurve, Indenter, Kernel
+from pellicle.components import Kernel
 from pellicle.errors import ConfigError, problems_within
+from pellicle_axisymmetric import BodyOfRevolution
 from pellicle_fit.contact.soft_bead import SoftBead
 
 from .interpolated import tensed
@@ -18,8 +19,8 @@ from .simulation import GRID_POINTS, plan, solved
 from .solid import UnitKernel
 
 _SKIN = "tensed_membrane"
-_EDGE = 0.85
-"""Edge of the grid over the width of the bead at the depth, of which a contact has 0.71."""
+_EDGE = 1.2
+"""Edge of the grid over the width of the contact with a rigid bead."""
 
 
 def constants_of(bead: Mapping[str, Any], poissons_ratio: float | None) -> tuple[float, float]:
@@ -54,15 +55,17 @@ def soft_bead(
     If it or the sample may have ``skins``, pairs of both are simulated; ``options`` are those of
     `solved`.
     """
-    if not (isinstance(rigid, Indenter) and isinstance(rigid, HasForceCurve) and rigid.depth_limit):
-        raise ConfigError("has no force curve of its own; a bead that yields needs one", "indenter")
+    if not isinstance(rigid, BodyOfRevolution):
+        raise ConfigError("is no body of revolution; a bead that yields has to be", "indenter")
     bead = SoftBead(rigid, modulus, 2 * tension / modulus)
     if not skins:
         return bead
     body = {"type": _SKIN, "reduced_modulus": 1.0, "tension": 0.0}
     kernel = registry().make(Kernel, {"type": "pair", "first": body, "second": body})
     pair = UnitKernel(kernel, "first.tension", None)
-    depths, halves, study = plan(rigid, pair, deepest, grid_points)
+    # Depths are rounded up, by less than twice; a sphere ends at its equator.
+    deepest = min(deepest, 0.4 * rigid.depth_limit)
+    depths, _, study = plan(rigid, pair, deepest, grid_points)
     rows = tensed(depths)
     lengths, _, softer = bead.nodes(rows)
     parts = (rows[:, None, None], lengths, 1 / softer)
@@ -71,13 +74,13 @@ def soft_bead(
     middle = np.arange(depth.size).reshape(softer.shape)[:, 2, 1]
     chosen = np.append(np.arange(depth.size), middle)
     points = [grid_points] * depth.size + [grid_points // 2] * rows.size
-    boxes = np.repeat(2 * _EDGE * tensed(halves), depth.size // rows.size, axis=0)
+    radii = np.repeat(rigid.contact_radius(rows, 0.0).radius, depth.size // rows.size)
     contacts = {
         "loading.depth": depth[chosen],
         "kernel.first.tension": length[chosen] / 2,
         "kernel.second.reduced_modulus": own[chosen],
         "kernel.second.tension": own[chosen] * bead.length / 2,
-        "grid.size": boxes[chosen],
+        "grid.size": 2 * _EDGE * np.outer(radii[chosen], [1.0, 1.0]),
         "grid.points": np.array(points),
     }
     forces = solved(study, contacts, **options)["force"].values.ravel()

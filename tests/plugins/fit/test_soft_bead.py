@@ -74,7 +74,7 @@ def test_a_file_and_overrides_say_the_same(tmp_path: Path) -> None:
         ({"bead": {"reduced_modulus": 1e3, "tension": [1e-3, 2e-3]}}, r"bead\.tension"),
         (
             {"indenter": "quadric", "radius": None, "radius_x": 1e-6, "radius_y": 2e-6},
-            "no force curve",
+            "no body of revolution",
         ),
     ],
     ids=lambda part: "" if isinstance(part, str) else "+".join(part),
