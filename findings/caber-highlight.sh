@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Guess: the neck of a filament, as caber (rheopy-caber) measures it, goes from its left to its right
-#   edge. A clear liquid in front of a lamp is bright in the middle, as a lens is; the edges are the
-#   same.
+# Guess: the neck of a filament, as caber (rheopy-caber) measures it, goes from its left to its
+#   right edge. A clear liquid in front of a lamp is bright in the middle, as a lens is; the edges
+#   are the same.
 # Version: rheopy-caber 0.1.0
 # Behaviour: it counts the dark points of each line. The bright middle is left out: a clear filament
 #   is thinner than an opaque one of the same outline. Where the stripe is a third of the width, so
 #   is what radius and speed of thinning lack, and the viscosity is 1.5 times too large.
-# Output seen: outlines of 60, 40 and 20 points: opaque 60, 40, 20, clear 40, 28, 14; viscosity of the
-#   clear one over that of the opaque one: 1.54
+# Output seen: outlines of 60, 40 and 20 points: opaque 60, 40, 20, clear 40, 28, 14; viscosity of
+#   the clear one over that of the opaque one: 1.54
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Guess: MittagLeffler of differintP gives what the relaxation of a spring in series with a springpot
-#   needs, E_a(-(t / tau)^a), for times up to ten or a hundred times tau: it falls from 1 towards 0.
+# Guess: MittagLeffler of differintP gives what the relaxation of a spring in series with a
+#   springpot needs, E_a(-(t / tau)^a), for times up to ten or a hundred times tau: it falls from 1
+#   towards 0.
 # Version: differintP 0.0.4, mpmath 1.4.1 (for the true values)
 # Behaviour: it sums 50 terms of the power series, in double precision. For a springpot of order 0.5
 #   the modulus is right to 16 tau; at 25 tau it is -3e9, at 100 tau -2e24, for one of order 0.3

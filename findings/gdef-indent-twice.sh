@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Guess: the table of GDEFIndentAnalyzer (GDEFReader) gives area and volume of an indent, whether and
-#   how often its map has been drawn before.
+# Guess: the table of GDEFIndentAnalyzer (GDEFReader) gives area and volume of an indent, whether
+#   and how often its map has been drawn before.
 # Version: GDEFReader 0.0.1a41
 # Behaviour: the drawing collects the points of the indent, and collects them again each time. The
 #   area is 0 before the first map, right after it, double after the second, for a map in another

@@ -31,7 +31,8 @@ distance = np.hypot(x[aside], y[aside])
 slope = distance / np.sqrt(radius**2 - distance**2)
 top, off = 1e-12 * sphere[middle], 1e-12 * sphere[aside]
 ridge = 1e-12 * cylinder[middle]
-print(f"sphere: {top:.2f} um^-2 at the top, {off:.2f} at {np.rad2deg(np.arctan(slope)):.0f} degrees")
+angle = np.rad2deg(np.arctan(slope))
+print(f"sphere: {top:.2f} um^-2 at the top, {off:.2f} at {angle:.0f} degrees")
 print(f"cylinder: {ridge:.2f} um^-2")
 assert np.isclose(top, 1, rtol=0.01), "another curvature at the top"
 assert np.isclose(off, 1 + slope**2, rtol=0.01), "it is the same everywhere on a sphere now"

@@ -3,8 +3,8 @@
 #   keeps a horizontal one.
 # Version: mastercurves 0.2.3
 # Behaviour: the bounds of the only vertical shift, where the data are logarithms, are not used: it
-#   is computed in closed form. Where density and temperature allow for 10 %, it takes any factor, and
-#   a curve that does not superpose looks as if it did. Horizontal shifts keep theirs.
+#   is computed in closed form. Where density and temperature allow for 10 %, it takes any factor,
+#   and a curve that does not superpose looks as if it did. Horizontal shifts keep theirs.
 # Output seen: curves a factor of 3 apart, bounds of 0.9 and 1.1: vertical shift 3.00, horizontal
 #   shift 1.10
 set -euo pipefail

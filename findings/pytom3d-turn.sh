@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Guess: rotate(t_deg) of PyToM-3D turns a surface by three angles about x, y and z, each in the same
-#   sense.
+# Guess: rotate(t_deg) of PyToM-3D turns a surface by three angles about x, y and z, each in the
+#   same sense.
 # Version: pytom3d 0.0.0rc6
 # Behaviour: about x and z it turns as a right-handed screw, about y as a left-handed one. A surface
 #   that is levelled with its two angles of tilt, from another program say, is level along y and
 #   tilted twice as much along x.
-# Output seen: 90 degrees: y goes to z, x goes to z (right-handed: z goes to x), x goes to y; tilts of
-#   2 and 3 degrees, turned back: 0.00 along y, 6.00 along x
+# Output seen: 90 degrees: y goes to z, x goes to z (right-handed: z goes to x), x goes to y; tilts
+#   of 2 and 3 degrees, turned back: 0.00 along y, 6.00 along x
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -7,8 +7,8 @@
 #   lowest point; both are a "distance axis in m". There and back moves the force by the amplitude:
 #   for a decay length of a fifth of it, 150 times too large. With the amplitude taken off the axis
 #   in between, it is right within 2 %.
-# Output seen: force over the true one: there and back 150.2 and 145.4; amplitude taken off 1.012 and
-#   0.980
+# Output seen: force over the true one: there and back 150.2 and 145.4; amplitude taken off 1.012
+#   and 0.980
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

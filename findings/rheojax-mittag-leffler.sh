@@ -3,12 +3,12 @@
 #   arguments "smoothly", falls from 1 towards 0 for the relaxation of a spring and a springpot in
 #   series, E_a(-(t / tau)^a), whatever the order a is.
 # Version: rheojax 0.7.1 (asks for Python 3.12; this function needs JAX only, which is 0.10.2 here)
-# Behaviour: the series is used to where its terms have grown far past the 16 digits of a double, the
-#   further the smaller the order. An order of 0.8 is right within a few per cent; orders of 0.2 and
-#   0.3 are off by any power of ten over two decades of time, right before and after. No warning. All
-#   its fractional models use it.
-# Output seen: where it is worst from 1 to 1000 tau: order 0.2: -1.04e+60 at 251 tau (true 0.225), order
-#   0.3: -2.55e+35 at 89 tau (0.172), order 0.8: 0.0473 at 9 tau (0.048)
+# Behaviour: the series is used to where its terms have grown far past the 16 digits of a double,
+#   the further the smaller the order. An order of 0.8 is right within a few per cent; orders of 0.2
+#   and 0.3 are off by any power of ten over a decade of time, from 22 and 30 tau on, right before
+#   and after. No warning. Its fractional models use it.
+# Output seen: where it is worst from 1 to 1000 tau: order 0.2: -1.04e+60 at 251 tau (true 0.225),
+#   order 0.3: -2.55e+35 at 89 tau (0.172), order 0.8: 0.0473 at 9 tau (0.048)
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -32,7 +32,7 @@ scan[30, 10:50] += 3
 once, mask = filters.destripe(scan.copy())
 twice, _ = filters.destripe(once.copy())
 left = [float((image - waves)[30, 10:50].mean()) for image in (once, twice)]
-print(f"{int(mask.sum())} of 40 points found; {left[0]:.2f} nm left, {left[1]:.2f} after a second pass")
+print(f"{int(mask.sum())} of 40 points found; {left[0]:.2f} nm left, {left[1]:.2f} after another")
 assert mask.sum() == 40 and mask[30, 10:50].all(), "the stripe is found in another place"
 assert np.allclose((once - waves)[~mask], 0), "other points are changed, too"
 assert np.isclose(left[0], 1), "another part of the stripe is left now"

@@ -5,8 +5,8 @@
 # Behaviour: the side that is up is the one that makes the axes of the plane right-handed; of these
 #   two may point either way. A tilt of a degree decides whether pits are pits or peaks. Sq and Svr
 #   do not tell; the skewness of the heights, their largest value and the map change sign.
-# Output seen: a plate with pits, skewness -4.35: level 4.43 (upside down), tilted by half a degree or
-#   one, to either side -4.42, by three degrees 4.42
+# Output seen: a plate with pits, skewness -4.35: level 4.43 (upside down), tilted by half a degree
+#   or one, to either side -4.42, by three degrees 4.42
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
