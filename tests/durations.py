@@ -1,7 +1,7 @@
 """Stored CPU seconds of each test: they say which tests are quick and which file is the longest.
 
-A row has the seconds of a test that runs alone, so with all of the fixtures that it shares: they
-would else fall on the first that asks for them, which differs between selections.
+A row has a share of the fixtures that a test shares with others of its file: they would else fall
+on the first that asks for them, which differs between selections.
 """
 
 import csv
@@ -36,6 +36,8 @@ class Durations:
     def __init__(self) -> None:
         self.before = _cpu_seconds()
         self.fixtures: dict[str, float] = {}
+        self.shared: dict[tuple[str, str], float] = {}
+        self.users: dict[tuple[str, str], list[str]] = defaultdict(list)
         self.seconds: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))
 
     def pytest_runtest_logstart(self) -> None:
@@ -47,7 +49,10 @@ class Durations:
         """Measure a fixture that tests share, and leave it out of the phase that it falls in."""
         before = _cpu_seconds()
         value = yield
-        if fixturedef.scope != "function":
+        if fixturedef.scope == "function":
+            # Another file may share one of this name.
+            self.fixtures.pop(fixturedef.argname, None)
+        else:
             self.fixtures[fixturedef.argname] = seconds = _cpu_seconds() - before
             self.before += seconds
         return value
@@ -56,12 +61,12 @@ class Durations:
     def pytest_runtest_makereport(
         self, item: pytest.Function
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-        """Note in the report of a phase its CPU seconds, with those of shared fixtures at setup."""
+        """Note in the report of a phase its CPU seconds, and those of the fixtures it shares."""
         report = yield
         now = _cpu_seconds()
-        shared = item.fixturenames if report.when == "setup" else ()
-        fixtures = sum(self.fixtures.get(name, 0.0) for name in shared)
-        report.cpu_seconds = now - self.before + fixtures  # type: ignore[attr-defined]
+        report.cpu_seconds = now - self.before  # type: ignore[attr-defined]
+        names = [name for name in item.fixturenames if name in self.fixtures]
+        report.shared = {name: self.fixtures[name] for name in names}  # type: ignore[attr-defined]
         self.before = now
         return report
 
@@ -70,11 +75,19 @@ class Durations:
         if report.passed:
             cases = self.seconds[function_of(report.nodeid)]
             cases[report.nodeid] += report.cpu_seconds
+            if report.when == "setup":
+                for name, seconds in report.shared.items():
+                    place = report.location[0], name
+                    self.shared[place] = seconds
+                    self.users[place].append(report.nodeid)
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
         """Write the file anew, where tests that have not run keep what they had."""
         if hasattr(session.config, "workerinput"):
             return
+        for place, seconds in self.shared.items():
+            for nodeid in self.users[place]:
+                self.seconds[function_of(nodeid)][nodeid] += seconds / len(self.users[place])
         measured = {test: sum(c.values()) / len(c) for test, c in self.seconds.items()}
         means = stored() | measured
         with STORED.open("w", encoding="utf-8", newline="") as file:

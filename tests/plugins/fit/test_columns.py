@@ -12,6 +12,7 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from scipy.io import savemat
 
 import pellicle as pl
@@ -552,6 +553,14 @@ def test_a_time_that_does_not_serve(time: Array) -> None:
     curve = clean(Measurement(np.arange(9.0), np.arange(9.0), time=time))
     assert curve.time is None
     assert [text for text in curve.messages if "as one without time" in text]
+
+
+def test_a_curve_is_drawn_in_the_units_of_its_labels() -> None:
+    """Micrometres against nanonewtons: no factor of 1000 is lost."""
+    rows = np.array([[-1.0, 0.0], [0.5, 2.0], [2.0, 7.0]])
+    axes = Measurement(1e-6 * rows[:, 0], 1e-9 * rows[:, 1]).plot(Figure().subplots())
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("position [µm]", "force [nN]")
+    np.testing.assert_allclose(np.asarray(axes.lines[0].get_xydata(), float), rows)
 
 
 EXPORTS = {
