@@ -142,7 +142,8 @@ SKIN_ON_GEL = {"type": "coated", "tension": 0.01, "substrate": _relaxing(2)}
 
 def _kind(points: int, boundary: str = "free", **changes: Any) -> dict[str, Any]:
     depth = 2e-5 if boundary == "free" else 1e-6
-    tables = pressing(points, SIZE, HALF_SPACE, paraboloid(1e-3), boundary=boundary, depth=depth)
+    cells, bead = [points, points], paraboloid(1e-3)
+    tables = pressing(cells, SIZE, HALF_SPACE, bead, boundary=boundary, depth=depth)
     return {**tables, "outputs": [], **changes}
 
 
