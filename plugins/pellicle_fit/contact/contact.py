@@ -127,7 +127,9 @@ class Contact:
 
     def of_modulus(self, modulus: float) -> Contact:
         """Return the same contact with a solid of another modulus [Pa]."""
-        area = _area(self.indenter, self.deepest, self.size, modulus)
+        if self.half_space or not isinstance(self.indenter, HasModulus):
+            return replace(self, modulus=modulus)
+        area = self.indenter.area(self.deepest, self.size, modulus)
         return replace(self, modulus=modulus, area=area)
 
     @cached_property

@@ -17,15 +17,16 @@ from .equivalent import EquivalentBody
 RATIOS: Array = np.array([0.05, 0.25, 1.2, 5.0, 24.0])
 """Nodes x = s/a under tension, a = ¾ F₀/δ."""
 _LEAST_DEPTH = 1e-60
-_DEPTHS = 3
+_TENSED = 3
+"""Depths at which a tension acts as well."""
 
 
 def tensed(values: Array) -> Array:
-    """Return those at the depths where a tension acts as well: three of every second, to the last.
+    """Return those at the depths where a tension acts as well: every second of the deepest.
 
     At shallower ones what is left changes little, and less of the force depends on it.
     """
-    return values[::-2][:_DEPTHS][::-1]
+    return values[::-2][:_TENSED][::-1]
 
 
 @dataclass(frozen=True, eq=False)
