@@ -26,7 +26,7 @@ CEILINGS = {
     "loading": 1170,
     "adhesion": 1290,
     "time": 895,
-    "flow-or-drain": 992,
+    "flow-or-drain": 1005,
     "sines": 795,
     "results": 875,
     "outputs": 1170,
