@@ -51,24 +51,30 @@ def read_text(path: Path) -> str:
     return text
 
 
-def splits_decimals(rows: Iterable[Sequence[str]]) -> bool:
-    """Return whether cells are in turn those before and after a decimal comma: whole numbers.
+def fault_of_commas(rows: Iterable[Sequence[str]]) -> str:
+    """Return what to do with a table whose commas may be decimal and separate columns, too.
 
-    Those after it have no sign, and one length that the others have not or zeros in front.
+    It has whole numbers alone, in turn those before and after a decimal comma. Those after it have
+    no sign, and one length that the others have not or zeros in front.
     """
     lengths: tuple[set[int], set[int]] = set(), set()
     few, is_led = set[str](), False
     for cells in rows:
         wholes, decimals = cells[::2], cells[1::2]
         if len(wholes) != len(decimals) or not all(map(_WHOLE.fullmatch, wholes)):
-            return False
+            return ""
         if not all(map(str.isdecimal, decimals)):
-            return False
+            return ""
         is_led = is_led or any(cell[0] == "0" < cell for cell in decimals)
         few.update(decimals if len(few) < _FEW else ())
         for of, part in zip(lengths, (wholes, decimals), strict=True):
             of.update(len(cell.lstrip("+-")) for cell in part)
-    return len(few) >= _FEW and (is_led or (len(lengths[1]) == 1 and lengths[0] != lengths[1]))
+    if len(few) < _FEW or not (is_led or (len(lengths[1]) == 1 and lengths[0] != lengths[1])):
+        return ""
+    return (
+        "has whole numbers alone, each second of which looks like decimals: commas may separate "
+        "its columns and its decimals too; export it with decimal points"
+    )
 
 
 def check_writable(path: Path) -> None:

@@ -10,7 +10,7 @@ from itertools import chain
 from pathlib import Path
 
 from pellicle.errors import ConfigError, StorageError
-from pellicle.files import read_text, splits_decimals
+from pellicle.files import fault_of_commas, read_text
 from pellicle.memory import require_for
 
 from .columns import EXAMPLE, NAMES, Calibration, Column, Columns, is_curve, plain, si_unit
@@ -270,11 +270,9 @@ def read_table(
         filled = ([cell for cell in row if cell.strip()] for row in rows)
         wide = [row for row in filled if len(row) > named and all(map(is_number, row))]
         refuse_wide(wide, named, path)
-    if separator == "," and not named and len(heads) > len(mapped) and splits_decimals(rows):
-        raise ConfigError(
-            f"{path}: has whole numbers alone, each second of which looks like decimals: commas "
-            "may separate its columns and its decimals too; export it with decimal points"
-        )
+    may_split = separator == "," and not named and len(heads) > len(mapped)
+    if may_split and (reason := fault_of_commas(rows)):
+        raise ConfigError(f"{path}: {reason}")
     known = mapped or {name: name for name in names if name in NAMES}
     if is_export and not mapped:
         # The position of the tip is that of a height, and time, unlike seriesTime, begins anew.

@@ -10,7 +10,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
-from pellicle.files import read_text, splits_decimals
+from pellicle.files import fault_of_commas, read_text
 
 from .file_checks import require_memory
 
@@ -72,12 +72,8 @@ def read_tables(text: str, path: Path) -> dict[str, TextTable]:
     if not any(map(str.strip, rows.values())):
         return {}
     widths = {number: len(row.split()) for number, row in rows.items()}
-    if mark == "," and splits_decimals(map(str.split, rows.values())):
-        raise ConfigError(
-            f"{path} has whole numbers alone, each second of which looks like decimals: commas may "
-            "separate its columns and its decimals too; export it with decimal points",
-            "path",
-        )
+    if mark == "," and (reason := fault_of_commas(map(str.split, rows.values()))):
+        raise ConfigError(f"{path} {reason}", "path")
     channels: dict[str, list[int]] = {}
     texts = []
     name = "Default"
