@@ -7,7 +7,6 @@ of E* (the correspondence principle; Lee & Radok 1960), also under a tension, wh
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +16,7 @@ from pellicle_axisymmetric import dynamic_punch_stiffness
 
 from .contact.contact import Contact, OwnArea
 from .contact.curve import Curve
-from .effect import Adds, ComplexArray, Records, Responds, Yields
+from .effect import Adds, ComplexArray, Responds, Yields
 from .explanation import Explanation
 
 _STEP = 1e-4
@@ -126,10 +125,10 @@ def _held(explanation: Explanation, curve: Curve) -> _Held:
     small = _STEP * np.max(np.abs(states.force))
     free = explanation.free_force(states)
 
-    def recorded(force: Array) -> Array:
-        return reduce(lambda f, e: e.recorded(f, states), explanation.of(Records), force)
-
-    gain = (recorded(states.force + small) - recorded(states.force)) / small
+    recorded = [
+        explanation.recorded(force, states) for force in (states.force, states.force + small)
+    ]
+    gain = (recorded[1] - recorded[0]) / small
     true = (states.force - free) / gain
 
     def give(force: Array) -> Array:
@@ -138,10 +137,8 @@ def _held(explanation: Explanation, curve: Curve) -> _Held:
     softness = (give(true + small) - give(true)) / small
     bends: Array | float = 0.0
     depth = explanation.base_depth(states) - give(true)
-    if curve.stiffness is not None:
-        stiffness = reduce(
-            lambda k, effect: effect.stiffness(k), explanation.of(Records), curve.stiffness
-        )
+    stiffness = explanation.stiffness(curve)
+    if curve.stiffness is not None and stiffness is not None:
         depth = depth - true / stiffness
         bends = 1 / stiffness - gain / curve.stiffness
     depth = np.maximum(depth, _SHALLOW * curve.span)

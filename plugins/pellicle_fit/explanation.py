@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -120,10 +120,7 @@ class Explanation:
 
     def free_force(self, curve: Curve) -> Array:
         """Return the force [N] that is recorded in each row of a cantilever without a load."""
-        force = np.zeros_like(curve.force)
-        for effect in self.of(Records):
-            force = effect.recorded(force, curve)
-        return force
+        return self.recorded(np.zeros_like(curve.force), curve)
 
     def depth(self, curve: Curve) -> Array:
         """Return the depth of the tip [m] in each row, negative before contact."""
@@ -187,9 +184,13 @@ class Explanation:
 
     def recorded(self, force: Array, curve: Curve) -> Array:
         """Return what the instrument makes of a true force [N] in each row."""
-        for effect in self.of(Records):
-            force = effect.recorded(force, curve)
-        return force
+        return reduce(lambda f, effect: effect.recorded(f, curve), self.of(Records), force)
+
+    def stiffness(self, curve: Curve) -> float | None:
+        """Return the true spring constant [N/m] of a curve; None if its cantilever is stiff."""
+        if curve.stiffness is None:
+            return None
+        return reduce(lambda k, effect: effect.stiffness(k), self.of(Records), curve.stiffness)
 
     def _each(self) -> Iterator[Explanation]:
         """Yield the explanation of each trial, of quantities that are numbers."""
@@ -204,11 +205,8 @@ class Explanation:
 
     def _forces(self, curve: Curve) -> _Forces:
         """Return what pushes and what gives way along the path of a curve."""
-        stiffness, softness = curve.stiffness, 0.0
-        if stiffness is not None:
-            for record in self.of(Records):
-                stiffness = record.stiffness(stiffness)
-            softness = 1 / stiffness
+        stiffness = self.stiffness(curve)
+        softness = 0.0 if stiffness is None else 1 / stiffness
         contact, base = self.contact(curve), self.base_depth(curve)
         adds, yields, responds = self.of(Adds), self.of(Yields), self.of(Responds)
 

@@ -17,7 +17,7 @@ from .effect import Effect
 @lru_cache(maxsize=64)
 def refuse_broken(effect: Effect) -> None:
     """Ask a stranger's effect the rules of the kit that balance no forces."""
-    if is_own(type(effect)):
+    if type(effect) in registry().own:
         return
     # The kit takes a second to import.
     from pellicle.testing import keep
@@ -29,12 +29,6 @@ def refuse_broken(effect: Effect) -> None:
     except AssertionError as error:
         broken = "; ".join(str(error).splitlines())
         raise PluginError(f"effect {effect.type_name!r}: {broken}") from None
-
-
-def is_own(effect: type[Effect]) -> bool:
-    """Return whether pellicle ships an effect."""
-    installed = registry().components[Effect.family].values()
-    return effect in {entry.component for entry in installed if entry.origin.is_own}
 
 
 @contextmanager

@@ -12,7 +12,7 @@ import re
 from collections.abc import Collection, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from importlib.metadata import EntryPoint, PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args, get_origin
 
@@ -62,6 +62,12 @@ class Registry:
     clashes: Mapping[tuple[str, str], tuple[Origin, ...]] = field(default_factory=dict)
     """Types claimed by more than one plugin; none of the claimants is in `components`."""
     disabled: tuple[Origin, ...] = ()
+
+    @cached_property
+    def own(self) -> frozenset[type[Component]]:
+        """The classes of the components that pellicle ships."""
+        entries = (entry for family in self.components.values() for entry in family.values())
+        return frozenset(entry.component for entry in entries if entry.origin.is_own)
 
     def find(self, family: str, type_: object) -> type[Component]:
         """Return the class of a component, or raise an error that says why there is none."""

@@ -73,7 +73,7 @@ def _operator(run: Run) -> Operator:
     case = Case(run.grid, run.kernel)
     parts = run.kernel, run.indenter, run.load, run.interaction, run.corrections
     for component in components_in(parts):
-        if component.family in CHEAP and not _is_own(type(component)):
+        if component.family in CHEAP and type(component) not in registry().own:
             # One that has no hash breaks its contract.
             with errors_attributed_to(component):
                 _ask_stranger(component, case)
@@ -81,13 +81,6 @@ def _operator(run: Run) -> Operator:
         operator = operator_of(instantaneous(run.kernel), run.grid)
         warn_of_cells(partial(along_axes, operator.symbol), run.grid)
     return operator
-
-
-@lru_cache
-def _is_own(kind: type[Component]) -> bool:
-    """Return whether a class is one that the distribution of pellicle registers."""
-    installed = registry().components[kind.family].values()
-    return any(entry.component is kind and entry.origin.is_own for entry in installed)
 
 
 # Whether a rule holds depends on the values of a component and on the grid.

@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pellicle import registry
 from pellicle.arrays import Array
 from pellicle_fit.dynamic import misfits
 from pellicle_fit.effect import Records, Responds, Weighed
 from pellicle_fit.explanation import Balance, columns_are_rows
-from pellicle_fit.strangers import is_own
 
 from .coordinates import CONTACT_POINT, Coordinates, Slot
 from .long_memory import differenced
@@ -152,7 +152,7 @@ class Objective(Coordinates):
     @cached_property
     def takes_columns(self) -> bool:
         """Whether trials are computed together; where an effect is a stranger's, that is tried."""
-        own = all(is_own(type(effect)) for effect in self.explanation.effects)
+        own = registry().own.issuperset(map(type, self.explanation.effects))
         return own or columns_are_rows(self.explanation, self.curves[0])
 
     @cached_property

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import Any, NamedTuple, Protocol, TypeVar
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Mask
 
@@ -55,23 +54,6 @@ class Minimum(NamedTuple):
     def chi_squared(self) -> float:
         """χ²."""
         return sum(self.squares)
-
-
-_Trials = TypeVar("_Trials", bound="_HasTerms")
-
-
-class _HasTerms(Protocol):
-    """Trials of a problem."""
-
-    @property
-    def terms(self) -> Array:
-        """Terms of each, of shape (k, terms); NaN where a trial is none."""
-
-    def of(self: _Trials, rows: NDArray[Any]) -> _Trials:
-        """Return some of them."""
-
-    def put(self: _Trials, rows: NDArray[Any], others: _Trials) -> None:
-        """Put others in the places of some."""
 
 
 class LeastSquares(Protocol):

@@ -89,7 +89,8 @@ def rows_of(base: Array, segments: Sequence[Pass], segment: Segment) -> tuple[in
         if inward == is_approach:
             if segment == "approach+hold":
                 # A hold of the tip moves the base by what a cantilever bends.
-                far = (f for f in segments[number + 1 :] if _leaves(base, f))
+                least, later = _CYCLE * np.ptp(base), segments[number + 1 :]
+                far = (f for f in later if abs(base[f.last] - base[f.first]) > least)
                 last = next((f.first - 1 for f in far), base.size - 1)
             return first, last, base.size if is_approach else first
     way, name = ("out of", "a retract") if is_approach else ("into", "an approach")
@@ -98,10 +99,6 @@ def rows_of(base: Array, segments: Sequence[Pass], segment: Segment) -> tuple[in
         f"{segment}, or set segment to {name.split()[1]!r}",
         "position",
     )
-
-
-def _leaves(base: Array, found: Pass) -> bool:
-    return bool(abs(base[found.last] - base[found.first]) > _CYCLE * np.ptp(base))
 
 
 def passes(base: Array, pause: Mask | None = None) -> list[Pass]:

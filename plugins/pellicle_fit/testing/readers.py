@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,6 @@ _CUTS = 12
 """Lengths at which a file is cut."""
 _DAMAGES = 40
 """Copies of a file with bytes that were changed."""
-_LETTERS = "[]*?!0123456789"
 
 
 def check_reader(reader: Reader, *paths: Path, calibration: Calibration | None = None) -> None:
@@ -96,18 +95,10 @@ def refuses_other_files_in_words(
     return ""
 
 
-class _copy:  # noqa: N801 - a context
-    """A file of some content with a suffix of a reader, in a folder of its own."""
-
-    def __init__(self, reader: Reader, content: bytes) -> None:
-        self._folder = tempfile.TemporaryDirectory()
-        self._name = "file" + reader.suffixes[0].replace("[0-9]", "0")
-        self._content = content
-
-    def __enter__(self) -> Path:
-        path = Path(self._folder.__enter__()) / self._name
-        path.write_bytes(self._content)
-        return path
-
-    def __exit__(self, *error: object) -> None:
-        self._folder.cleanup()
+@contextmanager
+def _copy(reader: Reader, content: bytes) -> Iterator[Path]:
+    """Yield a file of some content with a suffix of a reader, in a folder of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "file" + reader.suffixes[0].replace("[0-9]", "0"))
+        path.write_bytes(content)
+        yield path

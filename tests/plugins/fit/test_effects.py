@@ -489,7 +489,7 @@ def test_what_fails_at_work_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
             return super().force(contact, curve, depth if curve.span < 1.55e-6 else depth[10**9])
 
     entry = SimpleNamespace(component=Late, origin=SimpleNamespace(is_own=False))
-    installed = SimpleNamespace(components={"effect": {"push": entry}})
+    installed = SimpleNamespace(components={"effect": {"push": entry}}, own=frozenset())
     monkeypatch.setattr("pellicle_fit.strangers.registry", lambda: installed)
     with pytest.raises(IndexError) as caught:
         answer([bead(stiffness=0.05)], [], [[Late()]])
