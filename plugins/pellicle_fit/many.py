@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import pickle
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import nullcontext, suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from importlib.metadata import version
 from itertools import islice
@@ -29,18 +29,17 @@ from .config_input import described
 from .estimation.coordinates import MODULUS
 from .files.measurement import Measurement
 from .files.sources import Source
-from .part import FITTED_ELSEWHERE, passes
+from .part import FITTED_ELSEWHERE, FitTask, passes
 from .population.fits import ManyFits, summary, table
 from .population.images import force_maps
 from .population.judgement import Names, group_of, judge
 from .population.row import Row, as_json, sketch
-from .problem import FitProblem, components_of, problem, record_of
+from .problem import components_of, problem, record_of
 from .report.paper_table import save_tables
 from .report.population import save_population
 from .result import data_of
 from .sealed import read_sealed, write_sealed
 from .selection.calibration import common_errors
-from .selection.neighbour import Neighbour
 from .words.story import shares
 
 _JOURNAL = "curves"
@@ -59,24 +58,6 @@ _BATCH = 500
 """Curves that are in memory at once."""
 _PAGES = 20
 """Most pages of the contact sheet, a curve of which takes 0.04 s."""
-
-
-@dataclass(frozen=True)
-class FitTask:
-    """The fit of one curve; it pickles to workers."""
-
-    name: str
-    """Name in a progress bar."""
-    memory: int
-    """Estimated peak memory of the fit [bytes]."""
-    row: Row
-    problem: FitProblem
-    path: Path | None
-    """File that keeps the fit."""
-    common: Mapping[Any, float]
-    """Uncertainty that all curves share, which stands beside medians and in no interval."""
-    like: Sequence[Neighbour] = ()
-    """Curves alike, of which all explanations were compared, the nearest first."""
 
 
 def fit_sources(

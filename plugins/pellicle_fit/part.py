@@ -2,33 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol
+from pathlib import Path
+from typing import Any
 
 from pellicle.batch import Part, locked
-from pellicle.components import Say, Task
+from pellicle.components import Say
 from pellicle.errors import StorageError
 
 from .alike import Near
 from .population.row import Row
+from .problem import FitProblem
 from .sealed import read_sealed, write_sealed
+from .selection.neighbour import Neighbour
 
 FITTED_ELSEWHERE = "another process fits it"
 Work = Callable[[Any, Say], dict[str, Any]]
 """The fit of a task, as JSON data."""
 
 
-class KeptTask(Task, Protocol):
-    """The fit of a curve with the file that keeps it."""
+@dataclass(frozen=True)
+class FitTask:
+    """The fit of one curve; it pickles to workers."""
 
-    @property
-    def path(self) -> Any:
-        """The file."""
+    name: str
+    """Name in a progress bar."""
+    memory: int
+    """Estimated peak memory of the fit [bytes]."""
+    row: Row
+    problem: FitProblem
+    path: Path | None
+    """File that keeps the fit."""
+    common: Mapping[Any, float]
+    """Uncertainty that all curves share, which stands beside medians and in no interval."""
+    like: Sequence[Neighbour] = ()
+    """Curves alike, of which all explanations were compared, the nearest first."""
 
 
 def passes(
-    tasks: Sequence[KeptTask | None],
+    tasks: Sequence[FitTask | None],
     near: Sequence[Sequence[Near]],
     rows: Sequence[Row],
     part: Part | None,
@@ -58,8 +72,9 @@ def passes(
     yield own, partial(fit_alone, work=work, wait=False)
 
 
-def fit_alone(task: KeptTask, say: Say, *, work: Work, wait: bool) -> dict[str, Any]:
+def fit_alone(task: FitTask, say: Say, *, work: Work, wait: bool) -> dict[str, Any]:
     """Return the kept fit of a curve, or fit and keep it while no other process does."""
+    assert task.path is not None, "parts share a folder"
     with locked(task.path.parent, task.path.stem, wait=wait):
         try:
             return read_sealed(task.path)

@@ -268,12 +268,17 @@ class Table:
 
     @classmethod
     def of_rows(
-        cls, heads: Sequence[str], rows: Sequence[Sequence[object]], caption: str = ""
+        cls,
+        heads: Sequence[str],
+        rows: Sequence[Sequence[object]],
+        caption: str = "",
+        *,
+        folded: bool = False,
     ) -> Table:
         """Return a table, given its rows."""
         columns = zip(*rows, strict=True) if rows else [()] * len(heads)
         named = [Column(head, values) for head, values in zip(heads, columns, strict=True)]
-        return cls(named, caption)
+        return cls(named, caption, folded)
 
     @property
     def records(self) -> list[dict[str, object]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import compress
 
 import numpy as np
 
@@ -73,14 +74,13 @@ class Candidate:
         What is at a limit, or what the curves do not determine at all, has none.
         """
         objective, minimum = self.weighed or (self.objective, self.minimum)
-        low, high = objective.limits
-        free = np.flatnonzero((minimum.at > low) & (minimum.at < high))
-        jacobian = objective.jacobian(minimum.at, free.tolist())
+        free = objective.within(minimum.at)
+        jacobian = objective.jacobian(minimum.at, free)
         sizes = np.linalg.norm(jacobian, axis=0)
-        free, unit = free[sizes > 0], jacobian[:, sizes > 0] / sizes[sizes > 0]
+        unit = jacobian[:, sizes > 0] / sizes[sizes > 0]
         covariance = np.linalg.pinv(unit.T @ unit, rcond=1e-14, hermitian=True)
         deviations = np.sqrt(np.diag(covariance))
-        names = [objective.slots[k].full_name for k in free]
+        names = [objective.slots[k].full_name for k in compress(free, sizes > 0)]
         return {
             (names[i], names[j]): float(covariance[i, j] / (deviations[i] * deviations[j]))
             for i in range(len(names))
@@ -171,10 +171,7 @@ class Candidate:
         """Noise and flaws of each curve under it, from all rows."""
         at, forces = self.minimum.at, self.forces()
         objective = replace(self.of_rows, memory=())
-        jacobian = objective.jacobian(at, range(at.size))
-        # A coordinate at its limit is none that the fit could use.
-        low, high = objective.limits
-        jacobian = jacobian[:, (at > low) & (at < high)]
+        jacobian = objective.jacobian(at, objective.within(at))
         # Behind the rows of all curves stand those of what is weighed.
         by_curve = np.split(jacobian, np.cumsum([force.size for force in forces]))[:-1]
         memory = self.objective.memory or [0.0] * len(forces)

@@ -107,6 +107,11 @@ class Coordinates:
             ends.append((slot.coordinate(low), slot.coordinate(high)))
         return np.array(ends).reshape(-1, 2).T
 
+    def within(self, at: Array) -> list[int]:
+        """Return the coordinates that are at none of their limits, which a fit could use."""
+        low, high = self.limits
+        return np.flatnonzero((at > low) & (at < high)).tolist()
+
     def acts(self, slot: Slot, curve: int) -> bool:
         """Return whether a coordinate is of a curve."""
         owner = self.beads[curve] if slot.quantity.scope == "indenter" else curve

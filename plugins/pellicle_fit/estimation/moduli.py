@@ -101,16 +101,15 @@ def _moduli(
         ),
     )
     own = np.abs(complex_moduli(fit.known[number], moved) - here)
-    low, high = objective.limits
-    free = np.flatnonzero((at > low) & (at < high))
-    jacobian = objective.jacobian(at, free.tolist())
+    free = objective.within(at)
+    jacobian = objective.jacobian(at, free)
     covariance = np.linalg.pinv(jacobian.T @ jacobian, rcond=1e-14, hermitian=True)
     rates = []
     for k in free:
         there = at.copy()
         there[k] += _STEP
         rates.append((complex_moduli(objective.known(there, number), curve) - here) / _STEP)
-    slopes = np.array(rates).reshape(free.size, here.size)
+    slopes = np.array(rates).reshape(len(free), here.size)
     parts = np.array([slopes.real, slopes.imag])
     variances = np.einsum("pks,kl,pls->ps", parts, covariance, parts)
     return here, np.sqrt(np.maximum(variances, 0.0) + own**2)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar
@@ -119,8 +120,12 @@ def sections_of(
     return length, [*zip(parts[1::2], parts[2::2], strict=True)]
 
 
-def refused(path: Path, kind: str, error: Exception) -> StorageError:
-    """Return the error of a file that cannot be read as ``kind``, with the reason in words."""
-    reason = getattr(error, "strerror", "") or " ".join(map(str, error.args))
-    lacks = "it has no " if isinstance(error, KeyError) else ""
-    return StorageError(f"{path}: cannot be read as {kind} ({lacks}{reason})")
+@contextmanager
+def reading(path: Path, kind: str) -> Iterator[None]:
+    """Raise a StorageError, with the reason in words, where a file cannot be read as ``kind``."""
+    try:
+        yield
+    except (OSError, ValueError, LookupError, OverflowError) as error:
+        reason = getattr(error, "strerror", "") or " ".join(map(str, error.args))
+        lacks = "it has no " if isinstance(error, KeyError) else ""
+        raise StorageError(f"{path}: cannot be read as {kind} ({lacks}{reason})") from None

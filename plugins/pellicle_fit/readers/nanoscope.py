@@ -23,7 +23,7 @@ from pellicle_fit.files.reader import (
     Calibration,
     Reader,
     curve_of,
-    refused,
+    reading,
     sections_of,
 )
 
@@ -57,8 +57,9 @@ class NanoScope(Reader, title="Bruker NanoScope"):
 
 
 def _curve(path: Path, calibration: Calibration) -> Measurement:
-    try:
-        sections = _sections(path)
+    with reading(path, "a force curve of NanoScope"):
+        _, texts = sections_of(path, _SECTION, _END, _LONGEST)
+        sections = [(name, dict(_ENTRY.findall(text))) for name, text in texts]
         known = {name: value for _, section in sections for name, value in section.items()}
         if (context := sections[0][1]["Start context"]) != "FOL":
             raise ValueError(
@@ -84,8 +85,6 @@ def _curve(path: Path, calibration: Calibration) -> Measurement:
             place = [ramp * extent * np.linspace(1, 0, values.size) for values in rows]
         times = [ramp / float(known[f"{way} vel."]) for way in ("Forward", "Reverse")]
         stiffness = float(_either(bend, "Spring Constant", "Spring constant"))
-    except (OSError, ValueError, LookupError, OverflowError) as error:
-        raise refused(path, "a force curve of NanoScope", error) from None
     spans = [np.arange(v.size) / v.size * time for v, time in zip(rows, times, strict=True)]
     volts = np.append(rows[0][::-1], rows[1]) * slope
     exists = ~np.isin(np.append(rows[0][::-1], rows[1]), _MISSING)
@@ -103,12 +102,6 @@ def _curve(path: Path, calibration: Calibration) -> Measurement:
         spring_constant=stiffness or None,
         messages=messages,
     )
-
-
-def _sections(path: Path) -> list[tuple[str, Section]]:
-    """Return the sections of a header with their names, which may be the same."""
-    _, sections = sections_of(path, _SECTION, _END, _LONGEST)
-    return [(name, dict(_ENTRY.findall(text))) for name, text in sections]
 
 
 def _rows(path: Path, channel: Section) -> tuple[Array, Array]:

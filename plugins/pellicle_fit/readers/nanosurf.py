@@ -21,10 +21,11 @@ from pellicle_fit.files.reader import (
     Calibration,
     Reader,
     curve_of,
-    refused,
+    reading,
     sections_of,
 )
 
+_KIND = "a spectrum of Nanosurf"
 _END = b"\r\n#!"
 _LONGEST = 1 << 26
 """Bytes in which a header ends; each line of a map adds a hundred."""
@@ -70,15 +71,13 @@ class Nanosurf(Reader, title="Nanosurf"):
 
     def read(self, path: Path, calibration: Calibration) -> CurvesByLabel:
         """Return what reads each curve by its number, from 0."""
-        try:
+        with reading(path, _KIND):
             sections, channels = _content(path)
             forward = channels[_FORWARD]["Deflection"]
             count = int(forward.head["Lines"])
             done = min(count, int(forward.head.get("CurLine", count - 1)) + 1)
             if done < 1:
                 raise ValueError("no finished curve")
-        except (OSError, ValueError, LookupError, OverflowError) as error:
-            raise refused(path, "a spectrum of Nanosurf", error) from None
         read = partial(_curve, path, sections, channels, calibration)
         return {str(n) if done > 1 else "": partial(read, n) for n in range(done)}
 
@@ -117,7 +116,7 @@ def _curve(
     number: int,
 ) -> Measurement:
     """Return a curve: the way there, the pause and the way back, as far as they are in the file."""
-    try:
+    with reading(path, _KIND):
         options = sections.get(r"DataSet\Parameters\Spectroscopy", {})
         signal, place, time, pause = list[Array](), list[Array](), list[Array](), list[Mask]()
         first, began = channels[_FORWARD]["Deflection"].head, 0.0
@@ -139,8 +138,6 @@ def _curve(
             pause.append(np.full(count, frame == _PAUSE))
         is_measured = all(_SENSOR in channels[frame] for frame in _FRAMES if frame in channels)
         stiffness = _number(sections.get(r"DataSet\Calibration\Cantilever", {}), "Prop0")
-    except (OSError, ValueError, LookupError, OverflowError) as error:
-        raise refused(path, "a spectrum of Nanosurf", error) from None
     role = "force" if unit == "N" else "deflection"
     columns = {
         "extension": (np.concatenate(place), "m"),

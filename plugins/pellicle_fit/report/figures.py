@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import chain
 from pathlib import Path
 from textwrap import fill
@@ -11,9 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pellicle.analysis import Leg
+from pellicle.arrays import Array
 from pellicle.components import Axis, Chart, Look, Series
 from pellicle.show import figure_of
 from pellicle.show import save_figure as save_drawing
+from pellicle_fit.contact.curve import Curve
+from pellicle_fit.dynamic import explained_moduli
 from pellicle_fit.estimation.candidate import Candidate
 from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.population.fits import ManyFits
@@ -22,9 +26,7 @@ from pellicle_fit.selection.recipe import TENSION
 from pellicle_fit.words.names import words_of
 
 from .contact_sheet import PAGE, chosen, sheets
-from .course import chart_over_time, has_hold
 from .likelihood_map import likelihood_map
-from .moduli import chart_of_sines
 from .population import bars, distributions, guide, map_figure
 
 if TYPE_CHECKING:
@@ -40,6 +42,8 @@ _LETTERS = 30
 _LEGEND_CURVES = 8
 """Curves whose names have room in the legend of a pool."""
 _RESIDUALS = Axis("residual / noise", signed=True)
+_MODULI, _BEYOND = 61, 2.0
+"""Points of a line of moduli, and how far it goes beyond the frequencies of sines, as a factor."""
 
 
 def panels(fit: Fit | ManyFits) -> dict[str, Drawing]:
@@ -81,11 +85,11 @@ def charts(fit: Fit) -> dict[str, list[Chart]]:
         beside = f", and {words_of(rival)}" if rival else ""
         caption = f"Data, the fit, by {words_of(selected)}{beside}; below, residuals."
     found = {caption: [_curves(fit, rival)]}
-    if any(has_hold(curve) for curve in selected.whole):
-        found |= {"Force over time, with its hold; line, the fit.": [chart_over_time(fit)]}
+    if any(map(_has_hold, selected.whole)):
+        found |= {"Force over time, with its hold; line, the fit.": [_over_time(fit)]}
     if fit.sines:
         caption = "Storage and loss modulus of the sines, with 95 % intervals; lines, by "
-        found |= {f"{caption}{words_of(selected)}.": [chart_of_sines(fit)]}
+        found |= {f"{caption}{words_of(selected)}.": [_moduli(fit)]}
     for one in (selected, *answer.tied):
         if {MODULUS, TENSION} <= {slot.name for slot in one.objective.slots}:
             caption = f"The pairs of modulus and tension that describe the data by {words_of(one)}."
@@ -160,3 +164,54 @@ def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
     if count > 1:
         across, up = Axis("indentation / largest indentation"), Axis(f"force{less} / largest force")
     return Chart(across, [up, _RESIDUALS], series, hues=max(count, 2), heights=(3, 1))
+
+
+def _has_hold(curve: Curve) -> bool:
+    """Return whether the base rests after the approach, at times that are known."""
+    return curve.time is not None and bool(curve.rests.any())
+
+
+def _over_time(fit: Fit) -> Chart:
+    """Return force and fit over the time since the first row, of each curve with a hold."""
+    series = list[Series]()
+    pairs = zip(fit.answer.selected.whole, fit.forces(), strict=True)
+    for number, (curve, force) in enumerate(pairs):
+        if not _has_hold(curve):
+            continue
+        time = curve.clock - curve.clock[0]
+        legends = ("", "") if series else ("data", "fit")
+        series.append(Series(time, curve.force, legend=legends[0], look=Look(None, None, 0)))
+        series.append(Series(time, force, legend=legends[1], look=Look(number, number)))
+    return Chart(Axis("time", "s"), [Axis("force", "N")], series, hues=max(len(fit.curves), 2))
+
+
+def _moduli(fit: Fit) -> Chart:
+    """Return E′ and E″ of the reduced modulus over frequency, measured and by the explanation."""
+    selected, series, rows = fit.answer.selected, list[Series](), iter(fit.sines)
+    for number, (known, curve) in enumerate(zip(selected.known, selected.whole, strict=True)):
+        if not curve.sines:
+            continue
+        told = [next(rows) for _ in curve.sines]
+        frequency = np.array([sine["frequency"].value for sine in told])
+        at = np.geomspace(frequency.min() / _BEYOND, frequency.max() * _BEYOND, _MODULI)
+        dense = tuple(curve.sines[0]._replace(frequency=float(f)) for f in at)
+        modulus = explained_moduli(known, replace(curve, sines=dense))
+        for name, line, hue in (("storage", modulus.real, 0), ("loss", modulus.imag, 1)):
+            hue = 2 * number + hue
+            label = f"{name} modulus" if number == 0 else ""
+            series.append(Series(at, _positive(line), look=Look(hue, hue)))
+            for k, sine in enumerate(told):
+                of = sine[f"{name}_modulus"]
+                ends = (np.array([end]) for end in (of.low, of.high))
+                low, high = (_positive(end) for end in ends)
+                value, x = _positive(np.array([of.value])), frequency[[k]]
+                legend = label if k == 0 else ""
+                look = Look(hue, None, number)
+                series.append(Series(x, value, legend=legend, look=look, low=low, high=high))
+    y = Axis("storage and loss modulus", "Pa", log=True)
+    return Chart(Axis("frequency", "Hz", log=True), [y], series, hues=2 * len(fit.curves))
+
+
+def _positive(values: Array) -> Array:
+    """Return values, of which a logarithmic axis shows those > 0."""
+    return np.where(values > 0, values, np.nan)

@@ -65,12 +65,8 @@ def correlations(fit: Record) -> Table:
     caption = (
         f"Correlations of at least {_CORRELATED:g}; ± 1 where one quantity makes up for the other."
     )
-    columns = [
-        Column("parameter", [one for one, _, _ in pairs]),
-        Column("and", [other for _, other, _ in pairs]),
-        Column("correlation", [f"{value:.3f}" for *_, value in pairs]),
-    ]
-    return Table(columns, caption, folded=True)
+    rows = [(*of, f"{value:.3f}") for *of, value in pairs]
+    return Table.of_rows(("parameter", "and", "correlation"), rows, caption, folded=True)
 
 
 def explanations(fit: Record, *, si: bool = False) -> Table:

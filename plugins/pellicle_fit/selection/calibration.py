@@ -30,8 +30,7 @@ def common_errors(fit: Candidate, uncertainty: Mapping[Any, float]) -> dict[str,
     for (name, share), error in zip(uncertainty.items(), errors(uncertainty), strict=True):
         objective, at = fit.beside([error])
         (k,) = (k for k, slot in enumerate(objective.slots) if slot.name in error.open)
-        low, high = objective.limits
-        free = [i for i in range(at.size) if i != k and low[i] < at[i] < high[i]]
+        free = [i for i in objective.within(at) if i != k]
         by_error, *others = objective.jacobian(at, [k, *free]).T
         matrix = np.reshape(others, (len(free), -1)).T
         change = np.linalg.lstsq(matrix, by_error, rcond=1e-12)[0] if free else ()
