@@ -158,17 +158,12 @@ def planned(configuration: Run | Study, stem: Path, *, overwrite: bool = False) 
     points, folder = configuration.points, stem.with_name("runs")
     outputs = tuple(o for o in points[0].run.outputs or () if o.scope == "run")
     names = run_names(table.StudyTable(configuration).dataset())
-    return [
-        RunTask(
-            name,
-            point.run,
-            Journal(folder / identity[:16], identity, overwrite),
-            point.position,
-            outputs,
-        )
-        for name, point in zip(names, points, strict=True)
-        for identity in (point.run.identity,)
-    ]
+    tasks = []
+    for name, point in zip(names, points, strict=True):
+        identity = point.run.identity
+        journal = Journal(folder / identity[:16], identity, overwrite)
+        tasks.append(RunTask(name, point.run, journal, point.position, outputs))
+    return tasks
 
 
 def execute(
