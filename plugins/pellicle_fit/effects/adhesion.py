@@ -161,15 +161,12 @@ def _splines(root: Array, force: Array, rising: Mask) -> Callable[[Array], Array
 
 @lru_cache(maxsize=16)
 def _jumps(curve: Curve) -> list[tuple[NDArray[np.intp], Mask]]:
-    return [*jumps(curve)]
-
-
-def jumps(curve: Curve) -> Iterable[tuple[NDArray[np.intp], Mask]]:
-    """Yield, for each pass on which the force jumps, its rows and which of them touch.
+    """Return, for each pass on which the force jumps, its rows and which of them touch.
 
     Deeper by one row, the force falls where the indenter snaps in and where it has not yet snapped
     off.
     """
+    jumps = []
     for rows in curve.passes:
         if rows.size < 4 * _WIDTH:
             continue
@@ -181,4 +178,5 @@ def jumps(curve: Curve) -> Iterable[tuple[NDArray[np.intp], Mask]]:
         first = int(np.argmax(rises))
         if rises[first] > max(_JUMP * noise * np.sqrt(2 / _WIDTH), 0.0):
             last = first + int(np.argmax(np.diff(force[first : first + 2 * _WIDTH])))
-            yield deeper, np.arange(deeper.size) > last
+            jumps.append((deeper, np.arange(deeper.size) > last))
+    return jumps

@@ -106,8 +106,11 @@ def sines(fit: Record, *, si: bool = False) -> Table:
             for kind, name in (("storage", storage), ("loss", loss))
         ]
         unit = unit_of([e.value for e in both[0]] or [0.0], both[0][0].unit if of else "", si=si)
-        for prime, estimates_of in zip("′″", both, strict=True):
-            columns += _quantity_of(f"{symbol}{prime} [{unit.unit}]", unit, estimates_of)
+        for prime, measured in zip("′″", both, strict=True):
+            # Also of those that may be 0.
+            texts = [f"{unit.number(e.value, FEW)} ({interval(e, unit, FEW)})" for e in measured]
+            head = f"{symbol}{prime} [{unit.unit}]"
+            columns.append(Column(head, texts, meaning="with its 95 % interval"))
     degrees = [np.rad2deg(sine["phase"].value) for sine in of]
     columns.append(Column("phase [°]", [f"{phase:.1f}" for phase in degrees]))
     caption = (
@@ -115,12 +118,6 @@ def sines(fit: Record, *, si: bool = False) -> Table:
         "the contact of the model that was chosen; with 95 % intervals."
     )
     return Table(columns if of else [], caption)
-
-
-def _quantity_of(head: str, unit: Scale, of: Sequence[Estimate]) -> list[Column]:
-    """Return the column of measured values with intervals, also of those that may be 0."""
-    texts = [f"{unit.number(e.value, FEW)} ({interval(e, unit, FEW)})" for e in of]
-    return [Column(head, texts, meaning="with its 95 % interval")]
 
 
 def curves(fit: Record, *, si: bool = False) -> Table:
