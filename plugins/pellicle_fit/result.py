@@ -121,7 +121,7 @@ def data_of_fit(
         "headline": headline(answer),
         "comparison": verdict_in_words(answer),
         "tension_needed": answer.tension_needed,
-        "at_one_speed": answer.at_one_speed,
+        "at_this_speed": answer.at_this_speed,
         "agreement": agreement(answer, [name for name, _ in curves]),
         "widening": answer.agreement.factor,
         "next": [step(advice)._asdict() for advice in needs],

@@ -70,7 +70,8 @@ def numbers(fit: Record, *, si: bool = False) -> str:
     parts = [f"{words(name)} {in_figures(estimates[name], si=si)}" for name in names]
     if fit.verdict is Verdict.UNDESCRIBED:
         return f"not to be quoted: {', '.join(parts)}; {known}"
-    speed = ", at this speed" if fit.data["at_one_speed"] else ""
+    of_curves = "these speeds" if len(fit.curves) > 1 else "this speed"
+    speed = f", at {of_curves}" if fit.data["at_this_speed"] else ""
     return f"{', '.join(parts)}, {100 * CONFIDENCE:.0f} %{speed}; {known}"
 
 
