@@ -283,7 +283,9 @@ def _harmonics(
     cycles = 2 * half * frequency
     degree = int(min(_DEGREE, cycles // 2))
     course = legendre.legvander((time - middle) / half, degree)
-    turns = [np.exp(2j * np.pi * f * (time - middle)) for f in (frequency, 2 * frequency, *beside)]
+    # A second harmonic is its own, unless another sine stands there.
+    own = [f for f in (frequency, 2 * frequency) if all(abs(f - g) > 1 / half for g in beside)]
+    turns = [np.exp(2j * np.pi * f * (time - middle)) for f in (*own, *beside)]
     waves = np.column_stack([part for turn in turns for part in (turn.real, turn.imag)])
     design = np.column_stack([waves, course])
     weights, *_ = np.linalg.lstsq(design, measured.T, rcond=None)
@@ -291,7 +293,8 @@ def _harmonics(
     freedom = time.size / max(time.size - design.shape[1], 1)
     base, force = (complex(w[0], -w[1]) for w in weights.T)
     deviations = [_deviation(time, r, frequency, beside) * freedom**0.5 for r in residual.T]
-    oscillates = (waves[:, :4] @ weights[:4]).T
+    count = 2 * len(own)
+    oscillates = (waves[:, :count] @ weights[:count]).T
     course_of_base = course @ weights[waves.shape[1] :, 0]
     ends, cycle = time[[0, -1]], np.array([1.0, -1.0]) / frequency
     levels, inside = course_of_base[[0, -1]], np.interp(ends + cycle, time, course_of_base)
