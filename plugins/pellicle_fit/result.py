@@ -116,6 +116,7 @@ def data_of_fit(
             "words": in_words(target),
             "quantities": [name for name in question.wanted if name in selected.parameters],
         },
+        "baseline": [effect.type_name for effect in answer.baseline],
         "model": {"effects": sorted(selected.types), "words": words_of(selected)},
         "verdict": answer.verdict.value,
         "headline": headline(answer),

@@ -181,11 +181,13 @@ def _remarks_of_sines(answer: Answer) -> Iterator[str]:
 
 
 def remarks(answer: Answer) -> Iterator[str]:
-    """Yield a warning of a modulus that is not held, and notes of what was not compared."""
+    """Yield a warning of a modulus that is not held, and notes of what was added or left out."""
     for fit in answer.not_held:
         modulus = readable(fit.estimates[MODULUS].value, "Pa", 3)
         yield f"the modulus is not held: with {words_of(fit)} one of {modulus} would do as well"
     yield from _remarks_of_sines(answer)
+    if answer.baseline:
+        yield Note(f"{in_words(answer.baseline)} was needed, and is fitted beside all else")
     reasons: dict[str, list[str]] = {}
     question = answer.question
     for types, reason in answer.excused.items():
