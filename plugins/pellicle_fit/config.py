@@ -138,7 +138,9 @@ class FitConfig(FromFile, Calibration):
         "such as 5 %; without any, the calibration counts as exact",
     )
     baseline: Literal["none", "offset", "slope"] = Field(
-        "none", description="force before contact that is fitted: offset, or offset and slope"
+        "none",
+        description="force before contact that is fitted: offset, or offset and slope; with none, "
+        "what the curve shows",
     )
     segment: Segment = Field(
         "approach", description="what is fitted: a pass, the approach and its hold, or both passes"

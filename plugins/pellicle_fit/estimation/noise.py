@@ -129,7 +129,7 @@ def check_residuals(
         flaws.add(Flaw.MISFIT)
         noise = Noise(scatter.deviation, min(noise.freedom, free))
         deviation = scatter.deviation
-    bins = np.digitize(depth / depth.max(), _DEPTHS)
+    bins = np.digitize(depth / max(float(depth.max()), 1e-300), _DEPTHS)
     # A second pass has bins of its own.
     bins += (len(_DEPTHS) + 1) * (curve.moves_out & curve.first_pass[0])
     sums = binned(residuals, jacobian, np.where(before, -1, bins), 2 * (len(_DEPTHS) + 1))

@@ -44,6 +44,10 @@ _NEAR, _NEIGHBOURS = 2, 20
 on each side."""
 
 
+_Span = tuple[float, float, float, float]
+"""Frequency of a sine [Hz], from and to when it is steady, and a reach beyond [s]."""
+
+
 class _Harmonics(NamedTuple):
     """A sine of base and force where it is steady."""
 
@@ -57,6 +61,24 @@ class _Harmonics(NamedTuple):
     """The slow course of the base at the first and at the last row, of shape (2,)."""
     slopes: Array
     """Its velocity over the first and over the last cycle [m/s], of shape (2,)."""
+
+
+class _Found(NamedTuple):
+    """A sine in the rows where it is steady."""
+
+    rows: NDArray[np.intp]
+    parts: _Harmonics
+    frequency: float
+    ends: tuple[float, float]
+    """When it is steady without regard to others, from and to [s]."""
+    reach: float
+    """Time [s] within which it begins and ends beyond these."""
+
+    def at(self, time: Array, rows: NDArray[np.intp]) -> Array:
+        """Return the base [m] in some rows of the curve, at times of all, if it goes on there."""
+        middle = (time[self.rows[0]] + time[self.rows[-1]]) / 2
+        turn = np.exp(2j * np.pi * self.frequency * (time[rows] - middle))
+        return np.asarray((self.parts.base * turn).real)
 
 
 class Separated(NamedTuple):
@@ -101,17 +123,17 @@ def separate(
     base = position + softness * force
     spans = [_steady(time, base, f, frequencies) for f in frequencies]
     measured = np.array([base, force])
-    slow, inside, partly = measured.copy(), np.zeros(time.size, bool), np.zeros(time.size, bool)
-    sines = list[Sine]()
-    for frequency, (exact, first, last, reach) in zip(frequencies, spans, strict=True):
-        steady = (time >= first) & (time <= last)
-        rows = np.flatnonzero(steady)
+    slow, sines, of_sines = measured.copy(), list[Sine](), list[_Found]()
+    for frequency, span in zip(frequencies, spans, strict=True):
+        beside = [s for s in spans if s[1] < span[2] and s[2] > span[1] and s[0] != span[0]]
+        exact, first, last = _common(span, beside)
+        rows = np.flatnonzero((time >= first) & (time <= last))
         if rows.size < _FEWEST_ROWS * exact * (last - first):
             most = rows.size / (last - first) / _FEWEST_ROWS
             raise ConfigError(_too_fast(frequency, most), "frequencies")
-        beside = [s[0] for s in spans if s[1] < last and s[2] > first and s[0] != exact]
-        exact = _refined(time[rows], base[rows], exact)
-        found = _harmonics(time[rows], measured[:, rows], exact, beside)
+        at_once = [f for f, *_ in beside]
+        exact = _refined(time[rows], base[rows], exact, at_once)
+        found = _harmonics(time[rows], measured[:, rows], exact, at_once)
         if abs(found.base) < _CLEAR * found.deviations[0]:
             reason = "what oscillates is no more than noise"
             raise ConfigError(_absent(frequency, reason), "frequencies")
@@ -121,10 +143,14 @@ def separate(
         z, f, t = (float(np.mean(values[rows])) for values in (position, force, time))
         ends = int(rows[0]), int(rows[-1])
         sines.append(Sine(exact, amplitude, told, deviation, z, f, t, *ends))
-        inside |= steady
-        begin, end = _ends(time, base, rows, found, exact, reach)
-        partly[begin : end + 1] = True
-    left = np.flatnonzero(inside | ~partly)
+        of_sines.append(_Found(rows, found, exact, span[1:3], span[3]))
+    partly = np.zeros(time.size, bool)
+    for sine in of_sines:
+        first, last = sine.ends
+        others = [o for o in of_sines if o.ends[0] < last and o.ends[1] > first and o is not sine]
+        begin, end = _ends(time, slow[0], sine, others)
+        partly[begin : sine.rows[0]] = partly[sine.rows[-1] + 1 : end + 1] = True
+    left = np.flatnonzero(~partly)
     listed = ", ".join(f"{s.frequency:.4g}" for s in sines)
     lagging = f"; a lag of the force of {readable(lag, 's', 3)} is taken off" if lag else ""
     notes = (
@@ -136,9 +162,17 @@ def separate(
     return Separated(way - softness * load, load, left, tuple(sines), notes)
 
 
-def _steady(
-    time: Array, base: Array, frequency: float, frequencies: Sequence[float]
-) -> tuple[float, float, float, float]:
+def _common(span: _Span, beside: Sequence[_Span]) -> tuple[float, float, float]:
+    """Return when all others beside a sine are steady as well, if that is for long enough."""
+    exact, first, last, _ = span
+    begin = max([first, *(begin for _, begin, *_ in beside)])
+    end = min([last, *(end for _, _, end, _ in beside)])
+    if (end - begin) * exact < _FEWEST_CYCLES:
+        return exact, first, last
+    return exact, begin, end
+
+
+def _steady(time: Array, base: Array, frequency: float, frequencies: Sequence[float]) -> _Span:
     """Return the exact frequency [Hz] of a sine, when it is steady from and to, and a reach [s].
 
     Half the difference of a position and the mean of those half a cycle before and after has the
@@ -199,13 +233,13 @@ def _absent(frequency: float, reason: str) -> str:
     )
 
 
-def _refined(time: Array, base: Array, frequency: float) -> float:
-    """Return a frequency [Hz] whose sine keeps its phase along the base."""
+def _refined(time: Array, base: Array, frequency: float, beside: Sequence[float]) -> float:
+    """Return a frequency [Hz] whose sine keeps its phase along the base, beside others."""
     t = time - (time[0] + time[-1]) / 2
     for _ in range(_REFINED):
-        turn = np.exp(2j * np.pi * frequency * t)
-        waves = np.column_stack([turn.real, turn.imag, t * turn.real, t * turn.imag])
-        design = np.column_stack([waves, legendre.legvander(t / t[-1], 2)])
+        turns = np.exp(2j * np.pi * np.array([[frequency, *beside]]).T * t)
+        waves = [w for u in turns for w in (u.real, u.imag, t * u.real, t * u.imag)]
+        design = np.column_stack([*waves, legendre.legvander(t / t[-1], 2)])
         weights, *_ = np.linalg.lstsq(design / abs(design).max(axis=0), base, rcond=None)
         weights = weights / abs(design).max(axis=0)
         size, rate = complex(weights[0], -weights[1]), complex(weights[2], -weights[3])
@@ -213,29 +247,31 @@ def _refined(time: Array, base: Array, frequency: float) -> float:
     return frequency
 
 
-def _ends(
-    time: Array,
-    base: Array,
-    rows: NDArray[np.intp],
-    found: _Harmonics,
-    frequency: float,
-    reach: float,
-) -> tuple[int, int]:
-    """Return the first and the last row in which a sine may stand, which is steady in ``rows``.
+def _ends(time: Array, slow: Array, sine: _Found, others: Sequence[_Found]) -> tuple[int, int]:
+    """Return the first and the last row in which a sine may stand.
 
-    Beyond them the base leaves the sine that goes on.
+    Beyond them the base without sines where they are steady, ``slow``, leaves the one that goes on,
+    whether all others do, or none, one or all but one of them.
     """
-    middle, size = (time[rows[0]] + time[rows[-1]]) / 2, abs(found.base)
     ends = []
-    of_ends = zip((rows[0], rows[-1]), found.levels, found.slopes, (-1, 1), strict=True)
-    for row, level, slope, way in of_ends:
-        beyond = np.arange(row, -1 if way < 0 else time.size, way)
-        beyond = beyond[np.abs(time[beyond] - time[row]) < reach]
-        turn = np.exp(2j * np.pi * frequency * (time[beyond] - middle))
+    parts = sine.parts
+    for i, (way, level, slope) in enumerate(zip((-1, 1), parts.levels, parts.slopes, strict=True)):
+        row = sine.rows[-i]
+        beyond = np.arange(row + way, -1 if way < 0 else time.size, way)
+        beyond = beyond[way * (time[beyond] - sine.ends[i]) < sine.reach]
         course = level + slope * (time[beyond] - time[row])
-        off = base[beyond] - course - (found.base * turn).real
-        leaves = np.flatnonzero(np.abs(off) > _LEAVES * size)
-        ends.append(int(beyond[leaves[0]] - way if leaves.size else beyond[-1]))
+        off = slow[beyond] - course - sine.at(time, beyond)
+        none = np.zeros(beyond.size)
+        # What is left of others where they are not steady.
+        of_others = [
+            np.where((beyond < o.rows[0]) | (beyond > o.rows[-1]), o.at(time, beyond), none)
+            for o in others
+        ]
+        of_all = np.sum([none, *of_others], axis=0)
+        going_on = [none, of_all, *of_others, *(of_all - of for of in of_others)]
+        off = np.abs(off - going_on).min(axis=0)
+        leaves = np.flatnonzero(off > _LEAVES * abs(parts.base))
+        ends.append(int(row + way * (leaves[0] if leaves.size else beyond.size)))
     return ends[0], ends[1]
 
 
@@ -247,7 +283,9 @@ def _harmonics(
     cycles = 2 * half * frequency
     degree = int(min(_DEGREE, cycles // 2))
     course = legendre.legvander((time - middle) / half, degree)
-    turns = [np.exp(2j * np.pi * f * (time - middle)) for f in (frequency, 2 * frequency, *beside)]
+    # A second harmonic is its own, unless another sine stands there.
+    own = [f for f in (frequency, 2 * frequency) if all(abs(f - g) > 1 / half for g in beside)]
+    turns = [np.exp(2j * np.pi * f * (time - middle)) for f in (*own, *beside)]
     waves = np.column_stack([part for turn in turns for part in (turn.real, turn.imag)])
     design = np.column_stack([waves, course])
     weights, *_ = np.linalg.lstsq(design, measured.T, rcond=None)
@@ -255,7 +293,8 @@ def _harmonics(
     freedom = time.size / max(time.size - design.shape[1], 1)
     base, force = (complex(w[0], -w[1]) for w in weights.T)
     deviations = [_deviation(time, r, frequency, beside) * freedom**0.5 for r in residual.T]
-    oscillates = (waves[:, :4] @ weights[:4]).T
+    count = 2 * len(own)
+    oscillates = (waves[:, :count] @ weights[:count]).T
     course_of_base = course @ weights[waves.shape[1] :, 0]
     ends, cycle = time[[0, -1]], np.array([1.0, -1.0]) / frequency
     levels, inside = course_of_base[[0, -1]], np.interp(ends + cycle, time, course_of_base)

@@ -101,7 +101,7 @@ def _of_options(
 ) -> Iterator[Advice]:
     """Yield what another option of the fit would mend."""
     flaws = {flaw for judgement in answer.judgements for flaw in judgement.flaws}
-    types = answer.selected.objective.explanation.types
+    types = answer.selected.types
     if (Flaw.DRIFT in flaws or "slope" in types) and config.baseline != "slope":
         yield Advice(Remedy.FIT_SLOPE)
     elif (Flaw.OFFSET in flaws or "offset" in types) and config.baseline == "none":

@@ -28,6 +28,8 @@ class Neighbour(NamedTuple):
     ruled_out: frozenset[Types]
     values: Mapping[Types, Mapping[str, float]]
     """Values in SI of the quantities of each explanation."""
+    baseline: Types
+    """What of a baseline it needs, beside what was asked for."""
 
     @classmethod
     def of_dict(cls, fit: Mapping[str, Any]) -> Neighbour:
@@ -41,6 +43,7 @@ class Neighbour(NamedTuple):
                 types: {name: e["value"] for name, e in row["parameters"].items()}
                 for types, row in explanations.items()
             },
+            frozenset(fit["baseline"]),
         )
 
     def has(self, selected: Types, is_described: bool) -> bool:

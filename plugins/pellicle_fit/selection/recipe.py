@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain
 from typing import NamedTuple
 
@@ -16,16 +17,27 @@ from pellicle_fit.effect import Effect, Records, Responds, Solid
 from pellicle_fit.estimation.candidate import NONE, Candidate, Types, best_of
 from pellicle_fit.estimation.coordinates import CONTACT_POINT, MODULUS
 from pellicle_fit.estimation.intervals import End, Estimate, common_value, estimates, threshold_of
-from pellicle_fit.estimation.noise import CHANCE, ResidualCheck
+from pellicle_fit.estimation.noise import CHANCE, Flaw, ResidualCheck
 from pellicle_fit.strangers import refuse_broken, strangers_named
 
 from .neighbour import Neighbour
 from .rivals import Question, comparison
-from .verdict import MARGIN, SMALL, Decision, Verdict, choice, decision, doubtful, ties
+from .verdict import (
+    MANY_MARGIN,
+    MARGIN,
+    SMALL,
+    Decision,
+    Fits,
+    Verdict,
+    choice,
+    decision,
+    doubtful,
+    ties,
+)
 
 TENSION, DRAINING = "tension", "poroelastic"
-_ALIKE = 1.5
-"""Ratio of times over depth and radius below which curves drain alike."""
+BASELINE = frozenset({"offset", "slope"})
+"""Effects of a baseline."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +64,8 @@ class Answer:
     """Responses that act alone and whose force beside what is asked is not known."""
     not_weighed: tuple[Types, ...] = ()
     """Explanations that curves alike rule out."""
+    baseline: tuple[Effect, ...] = ()
+    """Rivals of the instrument that the curves need, so that all explanations have them."""
 
     @property
     def verdict(self) -> Verdict:
@@ -64,18 +78,16 @@ class Answer:
         return self.question.of_target == {TENSION} and self.verdict is Verdict.NEEDED
 
     @property
-    def at_one_speed(self) -> bool:
-        """Whether contacts grow alike, so that a solid that drains looks elastic, and may be one.
+    def at_this_speed(self) -> bool:
+        """Whether the modulus is that at the speed of the curves: the solid may drain unseen.
 
-        A round contact then drains by the same part at each size: the modulus is that at this
-        speed.
+        A round contact at one speed drains by the same part at each size, and looks elastic; two
+        radii or speeds also do if it has drained by then, or not yet.
         """
-        curves = self.selected.whole
-        if self.selected.known[0].of(Responds) or any(curve.rests.any() for curve in curves):
+        fit = self.selected
+        if fit.known[0].of(Responds) or any(curve.rests.any() for curve in fit.whole):
             return False
-        paces = [c.loading_time / (c.span * (c.contact.tip_radius or c.span)) for c in curves]
-        alike = max(paces) < _ALIKE * min(paces)
-        return alike and any(DRAINING in fit.types for fit in self.explanations)
+        return any(DRAINING in other.types for other in self.explanations)
 
     @property
     def not_held(self) -> tuple[Candidate, ...]:
@@ -236,8 +248,11 @@ def answer(
         refuse_broken(effect)
     curves = timed(curves)
     target = next((effect for effect in model if not isinstance(effect, Records)), None)
-    common = (*common, *(effect for effect in model if effect is not target))
-    question = Question(Solid.model_validate(dict(fix or {})), target, common, sets)
+    near = like[0].baseline if like else NONE
+    baseline = named(near - {effect.type_name for effect in common}, sets)
+    common = (*common, *baseline)
+    kept = (*common, *(effect for effect in model if effect is not target))
+    question = Question(Solid.model_validate(dict(fix or {})), target, kept, sets)
     candidates, of_target = question.candidates(), question.of_target
     excused = {
         types: why
@@ -258,13 +273,19 @@ def answer(
     weighed = {t: explanation for t, explanation in candidates.items() if t not in not_weighed}
     fits = dict(comparison(of_target, weighed, curves, like[0] if like else None))
     best = best_of(fits.values())
+    inadequate = doubtful(best.judgements)
+    again = partial(answer, curves, model, sets, fix=fix, uncertainty=uncertainty)
+    if more := named(baseline_of(best, fits, inadequate=inadequate), sets):
+        found = again(common=(*common, *more), like=like)
+        return replace(found, baseline=(*baseline, *more, *found.baseline))
     threshold = threshold_of(min(checked.noise.freedom for checked in best.judgements))
-    margin, inadequate = max(MARGIN, threshold), doubtful(best.judgements)
+    margin = max(MARGIN, threshold)
     decided = decision(fits, of_target, inadequate=inadequate, margin=margin)
     selected = choice(fits, of_target, decided)
     undescribed = decided.verdict is Verdict.UNDESCRIBED
     if not_weighed and not any(neighbour.has(selected, not undescribed) for neighbour in like):
-        return answer(curves, model, sets, common=common, fix=fix, uncertainty=uncertainty)
+        found = again(common=common)
+        return replace(found, baseline=(*baseline, *found.baseline))
     agreement = agreement_of(fits[selected])
     threshold *= agreement.factor
     alone = {types: candidates.get(types - of_target) for types in excused if of_target < types}
@@ -291,7 +312,29 @@ def answer(
         agreement,
         tuple(untried),
         tuple(not_weighed),
+        baseline,
     )
+
+
+def baseline_of(best: Candidate, fits: Fits, *, inadequate: bool) -> Types:
+    """Return what of a baseline the best explanation needs, or shows to lack.
+
+    It is of the instrument, and no rival of what the solid does, if nothing without it comes near:
+    it then acts beside all.
+    """
+    # A slope may stand for what no model describes before an offset is taken off.
+    for own in (best.types & BASELINE, *([best.types & {"offset"}] if inadequate else [])):
+        others = [fit.aic for types, fit in fits.items() if not own <= types]
+        if others and min(others) - best.aic >= MANY_MARGIN:
+            return own
+    lacks = any(Flaw.OFFSET in checked.flaws for checked in best.judgements)
+    return frozenset({"offset"} if lacks else ()) - best.objective.explanation.types
+
+
+def named(types: Types, rivals: Iterable[Sequence[Effect]]) -> tuple[Effect, ...]:
+    """Return those of rivals that have some types."""
+    effects = {effect.type_name: effect for rival in rivals for effect in rival}
+    return tuple(effects[name] for name in sorted(types & effects.keys()))
 
 
 def with_estimates(

@@ -70,7 +70,8 @@ def numbers(fit: Record, *, si: bool = False) -> str:
     parts = [f"{words(name)} {in_figures(estimates[name], si=si)}" for name in names]
     if fit.verdict is Verdict.UNDESCRIBED:
         return f"not to be quoted: {', '.join(parts)}; {known}"
-    speed = ", at this speed" if fit.data["at_one_speed"] else ""
+    of_curves = "these speeds" if len(fit.curves) > 1 else "this speed"
+    speed = f", at {of_curves}" if fit.data["at_this_speed"] else ""
     return f"{', '.join(parts)}, {100 * CONFIDENCE:.0f} %{speed}; {known}"
 
 
@@ -180,11 +181,13 @@ def _remarks_of_sines(answer: Answer) -> Iterator[str]:
 
 
 def remarks(answer: Answer) -> Iterator[str]:
-    """Yield a warning of a modulus that is not held, and notes of what was not compared."""
+    """Yield a warning of a modulus that is not held, and notes of what was added or left out."""
     for fit in answer.not_held:
         modulus = readable(fit.estimates[MODULUS].value, "Pa", 3)
         yield f"the modulus is not held: with {words_of(fit)} one of {modulus} would do as well"
     yield from _remarks_of_sines(answer)
+    if answer.baseline:
+        yield Note(f"{in_words(answer.baseline)} was needed, and is fitted beside all else")
     reasons: dict[str, list[str]] = {}
     question = answer.question
     for types, reason in answer.excused.items():

@@ -492,11 +492,21 @@ def test_a_curve_without_a_baseline_is_checked_too() -> None:
     assert holds(fit(position[inside], force[inside]).reduced_modulus, MODULUS)
 
 
-def test_an_offset_is_told_as_an_offset() -> None:
-    """Not as a baseline with a slope, which bends it as well; the next step says what it is."""
+@pytest.mark.parametrize("offset", [-20.0, 0.2, 20.0])
+@pytest.mark.parametrize("kind", ["elastic", "relaxing", "adhesive"])
+def test_an_offset_that_the_curve_shows_changes_nothing(kind: str, offset: float) -> None:
+    """A constant of the detector is no rival of what the solid does: all rivals act beside it."""
     position, force = curve()
-    rivals = [one for one in DEFAULT_RIVALS if "offset" in one]
-    found = fit(position, force + 0.2 * force.max(), rivals=rivals)
-    assert found.answer.selected.types == {"offset"}
-    assert found.comparison.endswith("described better by an offset")
-    assert found.advice.startswith("add --baseline offset")
+    depth = np.maximum(position - 1e-6, 0.0) / TOP
+    pushes = {"relaxing": force - 0.2 * force.max() * depth**1.5 * np.log1p(9 * depth)}
+    pushes["adhesive"] = force - 0.05 * force.max() * (position > 1e-6)
+    pushed = pushes.get(kind, force)
+    known, found = (
+        fit(position, pushed + shift * force.max(), rivals=DEFAULT_RIVALS, baseline=baseline)
+        for shift, baseline in ((0.0, "offset"), (offset, "none"))
+    )
+    assert found.answer.selected.types - {"offset"} == known.answer.selected.types
+    assert found.verdict is known.verdict
+    a, b = known.reduced_modulus, found.reduced_modulus
+    assert [b.low, b.high] == pytest.approx([a.low, a.high], rel=0.01)
+    assert ("offset" in found.answer.selected.types) != ("offset" in found.data["baseline"])

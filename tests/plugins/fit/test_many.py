@@ -183,7 +183,7 @@ def test_an_error_that_curves_share_stands_beside_the_median(
 
 
 def test_a_row_is_that_of_the_chosen_explanation() -> None:
-    """The row of a curve is what `fit` says of it, here that an offset describes it better."""
+    """The row of a curve is what `fit` says of it, here beside an offset that it needs."""
     position, force = curve(1)
     shifted = {"a": (position, force + 0.05 * force.max())}
     table = pl.fit_many(shifted, **BEAD, rivals=["offset"], progress=False)
@@ -193,7 +193,7 @@ def test_a_row_is_that_of_the_chosen_explanation() -> None:
         for end, value in (("low", estimate.low), ("high", estimate.high)):
             expected = np.nan if value is None else value
             assert table[f"{name}_{end}"].item() == pytest.approx(expected, nan_ok=True)
-    assert "offset" in str(table["model"].item())
+    assert "an offset was needed" in str(alone.data["remarks"])
     assert str(table["verdict"].item()) == alone.verdict.value
     assert table["comparison"].item() == alone.comparison
 

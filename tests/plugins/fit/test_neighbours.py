@@ -127,7 +127,7 @@ def test_what_makes_a_kind() -> None:
 def test_noise_alone_makes_no_curve_another() -> None:
     """A check that fails by the noise alone contradicts no model, so that the curve speaks."""
     plain = {"effects": [], "delta_aic": 0.0, "tied": True, "parameters": {}}
-    fit = {"verdict": "no sign", "explanations": [plain]}
+    fit = {"verdict": "no sign", "explanations": [plain], "baseline": []}
     fit["curves"] = [{"failed_checks": [{"code": "slow"}]}]
     assert Neighbour.of_dict(fit).has(frozenset(), is_described=True)
     assert not Neighbour.of_dict(fit | {"verdict": "no model describes"}).has(frozenset(), True)

@@ -79,6 +79,19 @@ def test_hold_tells() -> None:
     assert alone.reduced_modulus.value > 1.2 * MODULUS
 
 
+def test_pool_that_shows_no_draining_has_the_modulus_of_its_speeds() -> None:
+    """What has drained as it was pressed, or not yet, looks elastic at any radius."""
+    curves, radii = {}, [RADIUS, RADIUS / 4]
+    for i, radius in enumerate(radii):
+        depth = np.linspace(-0.5, 1, 90) * radius / 10
+        force = 4 / 3 * MODULUS * np.sqrt(radius) * np.maximum(depth, 0) ** 1.5
+        noise = np.random.default_rng(i).normal(scale=0.01 * force.max(), size=90)
+        curves[str(i)] = depth, force + noise, np.linspace(0, 1, 90)
+    fit = pl.fit_pooled(curves, indenter="paraboloid", radius=radii, rivals=["poroelastic"])
+    assert fit.answer.selected.types == set()
+    assert "at these speeds" in str(fit)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("pool", ["radii", "speeds"])
 def test_pools_tell(pool: str) -> None:

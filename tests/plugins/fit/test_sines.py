@@ -189,16 +189,24 @@ def test_lag_of_the_force_is_taken_off() -> None:
     assert any("a lag of the force of 10 ms is taken off" in text for text in found.messages)
 
 
-def test_sines_at_once_are_told_apart() -> None:
-    """Two frequencies may stand in the same rows."""
-    time = np.arange(-1.5, 8.0, 1 / 400)
+@pytest.mark.parametrize("begins", [(1.5, 1.5, 1.5), (2.0, 2.6, 2.0), (3.0, 2.0, 2.3)])
+@pytest.mark.parametrize("ends", [(8.0, 8.0, 8.0), (7.0, 7.4, 6.8)])
+def test_sines_at_once_are_told_apart(begins: Any, ends: Any) -> None:
+    """Frequencies may stand in the same rows, and leave none of them behind."""
+    time, frequencies = np.arange(-1.5, 8.0, 1 / 400), (1.5, 4.0, 10.0)
     tip, force = np.minimum(time, 1.0) * DEPTH, np.maximum(np.minimum(time, 1.0), 0.0) * 1e-9
-    stiffness = np.array([2e-3 + 5e-4j, 3e-3 + 1e-3j])
-    for frequency, k in zip((4.0, 10.0), stiffness, strict=True):
-        turn = np.where(time > 2, np.exp(2j * np.pi * frequency * (time - 2)), 0.0)
+    stiffness = np.array([1e-3 + 2e-4j, 2e-3 + 5e-4j, 3e-3 + 1e-3j])
+    for frequency, k, begin, end in zip(frequencies, stiffness, begins, ends, strict=True):
+        stands = (time > begin) & (time < end)
+        turn = np.where(stands, np.exp(2j * np.pi * frequency * (time - begin)), 0.0)
         tip, force = tip + AMPLITUDE * turn.imag, force + AMPLITUDE * (k * turn).imag
-    found = clean(Measurement(tip, force, time=time), "approach", (4.0, 10.0))
-    assert np.array([s.stiffness for s in found.sines]) == pytest.approx(stiffness, rel=5e-3)
+    found = clean(Measurement(tip, force, time=time), "approach+hold", frequencies)
+    assert np.array([s.stiffness for s in found.sines]) == pytest.approx(stiffness, rel=1e-3)
+    assert found.time is not None
+    hold = found.position[found.time > 1.0]
+    assert np.ptp(hold) < 0.6 * AMPLITUDE
+    assert np.sum(np.abs(hold - np.median(hold)) > 0.02 * AMPLITUDE) < 0.03 * hold.size
+    assert np.sum(found.time <= 1.0) == np.sum(time <= 1.0)
 
 
 @pytest.mark.parametrize(
