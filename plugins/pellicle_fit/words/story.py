@@ -15,7 +15,7 @@ from pellicle_fit.estimation.candidate import NONE, Candidate
 from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.estimation.intervals import CONFIDENCE
 from pellicle_fit.estimation.moduli import misfit
-from pellicle_fit.estimation.noise import Flaw
+from pellicle_fit.estimation.noise import Flaw, is_straight
 from pellicle_fit.files.measurement import Note
 from pellicle_fit.record import Record
 from pellicle_fit.selection.recipe import Answer
@@ -180,7 +180,9 @@ def _remarks_of_sines(answer: Answer) -> Iterator[str]:
 
 
 def remarks(answer: Answer) -> Iterator[str]:
-    """Yield a warning of a modulus that is not held, and notes of what was not compared."""
+    """Yield warnings of what does without the modulus, and notes of what was not compared."""
+    if any(map(is_straight, answer.selected.whole)):
+        yield "a straight line describes the forces as well: perhaps there is no contact"
     for fit in answer.not_held:
         modulus = readable(fit.estimates[MODULUS].value, "Pa", 3)
         yield f"the modulus is not held: with {words_of(fit)} one of {modulus} would do as well"

@@ -396,6 +396,16 @@ def test_flaws_are_seen(change: Any, flaw: Flaw | None) -> None:
     assert flaw in found if flaw else not found
 
 
+@pytest.mark.parametrize("noise", [3e-3, 0.03, 0.1])
+@pytest.mark.parametrize("offset", [-0.5, 0.0, 5.0])
+def test_a_baseline_without_contact_is_told(noise: float, offset: float) -> None:
+    """One that slopes gives moduli, some of them narrow; no contact is as straight."""
+    (position, force), random = curve(noise=noise), np.random.default_rng(5)
+    line = np.linspace(0, 1, force.size) + offset + noise * random.standard_normal(force.size)
+    told = [fit(position, f, model=()).messages for f in (1e-9 * line, force)]
+    assert [any("no contact" in text for text in messages) for messages in told] == [True, False]
+
+
 def test_noise_of_1_over_f_is_taken_so() -> None:
     """Intervals of correlated noise hold the modulus, and are wider than those of white noise."""
     position, clean = curve(points=600, noise=0.0)
