@@ -176,7 +176,7 @@ def test_table_for_a_paper(tmp_path: Path) -> None:
         row("a_1|%.csv", 2e3, tension=estimate(3e-3, "N/m")),
         row("b.csv", 2e6, is_open=True, tension=estimate(3e-6, "N/m", (None, 1.1))),
         row("c.csv", 2.5, tension=none),
-        row("d.csv", None),
+        row("d\nd.csv", None),
     ]
     judge(rows, [], None)
     files = save_tables(rows, tmp_path / "t")
@@ -188,11 +188,11 @@ def test_table_for_a_paper(tmp_path: Path) -> None:
         ["a_1|%.csv", "no sign of tension", "2.00", "1.80 to 2.20", "3.00", "2.70 to 3.30", "50"],
         ["b.csv", "no sign of tension", "", "> 1800", "", "< 0.0033", "50"],
         ["c.csv", "no sign of tension", "0.00250", "0.00225 to 0.00275", "", "", "50"],
-        ["d.csv", "not accepted: failed: no contact", "", "", "", "", ""],
+        ["d d.csv", "not accepted: failed: no contact", "", "", "", "", ""],
     ]
     marked, typeset = (file.read_text(encoding="utf-8") for file in files[1:])
     assert "| a_1\\|%.csv | no sign of tension | 2.00 | 1.80 to 2.20 |" in marked
-    assert "a\\_1|\\%.csv & no sign of tension & 2.00 & 1.80 to 2.20 &" in typeset
+    assert "a\\_1$|$\\%.csv & no sign of tension & 2.00 & 1.80 to 2.20 &" in typeset
     assert "& $<$ 0.0033 & 50" in typeset
     assert marked.count("\n") == len(rows) + 2
 
