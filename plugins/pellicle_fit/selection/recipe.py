@@ -20,8 +20,8 @@ from pellicle_fit.estimation.noise import CHANCE, ResidualCheck
 from pellicle_fit.strangers import refuse_broken, strangers_named
 
 from .neighbour import Neighbour
-from .rivals import Question, comparison
-from .verdict import MARGIN, SMALL, Decision, Verdict, choice, decision, doubtful, ties
+from .rivals import Question, at_common_noise, comparison
+from .verdict import MANY_MARGIN, MARGIN, SMALL, Decision, Verdict, choice, decision, doubtful, ties
 
 TENSION, DRAINING = "tension", "poroelastic"
 _ALIKE = 1.5
@@ -52,6 +52,8 @@ class Answer:
     """Responses that act alone and whose force beside what is asked is not known."""
     not_weighed: tuple[Types, ...] = ()
     """Explanations that curves alike rule out."""
+    elsewhere: Candidate | None = None
+    """With another contact point than a given one, what describes the curve where that does not."""
 
     @property
     def verdict(self) -> Verdict:
@@ -291,7 +293,27 @@ def answer(
         agreement,
         tuple(untried),
         tuple(not_weighed),
+        _elsewhere(question, fits, margin),
     )
+
+
+def _elsewhere(
+    question: Question, fits: Mapping[Types, Candidate], margin: float
+) -> Candidate | None:
+    """Return the best simple explanation that touches elsewhere than given, if it is so good."""
+    if question.solid.contact_point is None:
+        return None
+    solid = question.solid.of_values({CONTACT_POINT: None})
+    simple = {NONE: fits[NONE], question.of_target: fits[question.of_target]}
+    of = [fit.objective.explanation for fit in simple.values()]
+    free = dict(zip(simple, (replace(one, solid=solid) for one in of), strict=True))
+    curves = tuple(replace(curve, touch=None) for curve in fits[NONE].whole)
+    memory = fits[NONE].objective.memory
+    elsewhere = best_of(comparison(question.of_target, free, curves, memory=memory).values())
+    moved = frozenset({CONTACT_POINT})
+    known = at_common_noise({**fits, moved: elsewhere})
+    given, best = (best_of(known[t] for t in some).aic for some in (simple, fits))
+    return elsewhere if known[moved].aic < min(given - MANY_MARGIN, best + margin) else None
 
 
 def with_estimates(

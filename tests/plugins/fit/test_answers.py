@@ -406,6 +406,18 @@ def test_a_baseline_without_contact_is_told(noise: float, offset: float) -> None
     assert [any("no contact" in text for text in messages) for messages in told] == [True, False]
 
 
+@pytest.mark.parametrize("tension", [0.0, TENSION])
+@pytest.mark.parametrize("off", [0.0, -0.05, 0.05])
+def test_a_contact_point_that_is_given_wrong_is_told(tension: float, off: float) -> None:
+    """A twentieth of the depth makes a tension of nothing or hides one; 0 is not doubted."""
+    position, force = curve(tension)
+    rivals = ["rough_toe", "softening", "offset"]
+    found = fit(position + off * TOP, force, rivals=rivals, fix={"contact_point": 1e-6})
+    warned = [text for text in found.messages if "contact point is given" in text]
+    assert bool(warned) == bool(off)
+    assert not warned or ("tension" in warned[0]) == bool(tension)
+
+
 def test_noise_of_1_over_f_is_taken_so() -> None:
     """Intervals of correlated noise hold the modulus, and are wider than those of white noise."""
     position, clean = curve(points=600, noise=0.0)

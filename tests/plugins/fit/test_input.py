@@ -121,7 +121,7 @@ def test_wrong_radius_is_noticed(indenter: str) -> None:
     fit = pl.fit(*_curve(), indenter=indenter, radius=RADIUS / 1000)
     assert fit.advice.startswith("check radius and units")
     for radius in (1e-40, 1e8):
-        with pytest.raises(pl.ConfigError, match="indenter.radius: is .*; check the units"):
+        with pytest.raises(pl.ConfigError, match=r"indenter.radius: is .*; check the units"):
             pl.fit(*_curve(), indenter=indenter, radius=radius, rivals=["adhesion"])
 
 
