@@ -1,4 +1,4 @@
-"""Fits of one curve, of a pool and of many as ``pellicle fit`` left them, to be shown and drawn again."""
+"""Fits of one curve, of a pool and of many as ``pellicle fit`` left them, shown and drawn again."""
 
 from __future__ import annotations
 
