@@ -139,8 +139,7 @@ def fit(
         print_fit(result, quiet=quiet, details=details, si=si)
     if directory is not None and not isinstance(result, ManyFits):
         written.append(write_json(result.to_dict(), directory / f"{name}.json"))
-        if len(result.curves) == 1:
-            written.append(StoredFit.write(result, directory / f"{name}.h5"))
+        written.append(StoredFit.write(result, directory / f"{name}.h5"))
         written += save_figure(result, directory / name, kinds)
     if report:
         written.append(save_report(result, (directory or Path()) / f"{name}.html", title))

@@ -36,6 +36,8 @@ from .simulated.simulation import simulated_curve
 from .simulated.solid import solid
 
 _BASELINES = {"none": (), "offset": ("offset",), "slope": ("offset", "slope")}
+_SCALES = 1e9
+"""Radius over the range of positions, or the reverse, beyond which no contact has a number."""
 _REACH = 1.5
 """Depth down to which a force is simulated where the contact is not known, over the range."""
 _RATIO = "poissons_ratio"
@@ -88,6 +90,12 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
             if len(sources) == 1 or isinstance(error, MissingInputError):
                 raise
             raise source.named(error, "; leave it out") from None
+    for indenter, curve in zip(indenters, measured, strict=True):
+        radius, way = getattr(indenter, "radius", None), float(np.ptp(curve.position))
+        if radius and not way / _SCALES < radius < way * _SCALES:
+            sizes = readable(radius, "m", 3), readable(way, "m", 3)
+            reason = "is {} for positions that vary by {}; check the units".format(*sizes)
+            raise ConfigError(reason, "indenter.radius")
     depths = {curve.is_depth for curve in measured}
     if len(depths) > 1:
         raise ConfigError("some are of depths and some of positions; fit them apart", "curves")

@@ -1,4 +1,4 @@
-"""Fits of one curve and of many as ``pellicle fit`` left them, to be shown and drawn again."""
+"""Fits of one curve, of a pool and of many as ``pellicle fit`` left them, shown and drawn again."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ from .sealed import read_sealed
 
 
 def stored(file: Path) -> StoredFit | StoredFits:
-    """Return what shows a file that ``pellicle fit`` wrote of one curve or of many."""
+    """Return what shows a file that ``pellicle fit`` wrote of a fit or of many."""
     with h5py.File(file) as content:
         attributes = dict(content.attrs)
     return StoredFit(file.stem, attributes["fit"]) if "fit" in attributes else StoredFits(file)
 
 
 class StoredFit:
-    """The fit of one curve: a file with its JSON."""
+    """The fit of one curve, or of several of one solid: a file with its JSON."""
 
     @staticmethod
     def write(fit: Fit, path: Path) -> Path:
@@ -55,11 +55,12 @@ class StoredFit:
             print_fit(self.fit, quiet=False, details=False, si=si)
 
     def plot(self, directory: Path, formats: Sequence[str]) -> Iterable[Path]:
-        """Fit the curve again, whose file must not have changed, and write the figure."""
+        """Fit the curves again, whose files must not have changed, and write the figure."""
         config = FitConfig(**self.fit.data["configuration"])
-        again, was = problem(config, [*config.sources()]).fit(), self.fit.curve
-        if again.curve["data"]["sha256"] != was["data"]["sha256"]:
-            raise StorageError(f"{was['name']}: has changed since it was fitted; fit it again")
+        again = problem(config, [*config.sources()]).fit()
+        for curve, was in zip(again.curves, self.fit.curves, strict=True):
+            if curve["data"]["sha256"] != was["data"]["sha256"]:
+                raise StorageError(f"{was['name']}: has changed since it was fitted; fit it again")
         return save_figure(again, directory / self.name, formats)
 
 

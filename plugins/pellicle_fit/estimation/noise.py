@@ -176,6 +176,15 @@ def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw],
     return flaws, white, noise
 
 
+def is_straight(curve: Curve) -> bool:
+    """Return whether a line leaves nothing but noise of the first pass, as of a mere baseline."""
+    force, base = (of[curve.first_pass] for of in (curve.force, curve.base))
+    line = np.column_stack([np.ones(force.size), (base - base.mean()) / np.ptp(base)])
+    rest = force - line @ np.linalg.lstsq(line, force, rcond=None)[0]
+    sums = binned(rest, line, np.arange(rest.size) * _BINS // rest.size, _BINS)
+    return not (sums and sums.exceeds(neighbour_noise(rest)))
+
+
 def _dip(force: Array, trend: Array) -> tuple[float, int]:
     """Return the deepest mean of a window next to contact about a trend [N], and its rows.
 

@@ -270,7 +270,8 @@ def read_table(
         filled = ([cell for cell in row if cell.strip()] for row in rows)
         wide = [row for row in filled if len(row) > named and all(map(is_number, row))]
         refuse_wide(wide, named, path)
-    may_split = separator == "," and not named and len(heads) > len(mapped)
+    # A curve has two columns, which would be four of whole numbers.
+    may_split = separator == "," and not named and len(heads) > max(len(mapped), 3)
     if may_split and (reason := fault_of_commas(rows)):
         raise ConfigError(f"{path}: {reason}")
     known = mapped or {name: name for name in names if name in NAMES}

@@ -98,31 +98,30 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
     """Return a line for each parameter and group that has an accepted curve, then for all curves.
 
     Of all ``curves`` of a group ``n`` are accepted. Quartiles are of the best values of all of
-    these, of which ``open`` have an interval with an open end, or one too wide to quote the value,
-    and ``no_sign`` show no sign of what has the parameter.  Parameters that were fixed have no
-    line.  Where curves share an error of the calibration, there is a ``common_error``.
+    these, of which ``open`` have an interval with an open end, or quote no value, and ``no_sign``
+    show no sign of what has the parameter.  Parameters that were fixed have no line.  Where curves
+    share an error of the calibration that moves the median, there is a ``common_error``.
     """
     # A row is unpacked once for all names.
     fitted = [
-        (name, row.group, e, fit.has_no_sign(name), row.outlier, fit.common_errors(name))
+        (name, row.group, best, own, fit.has_no_sign(name), row.outlier, fit.common_errors(name))
         for row in rows
         if row.accepted
         for fit in (row.fit,)
         for name in _NAMES
-        if (e := fit.best(name)) is not None
+        if (own := fit.estimates().get(name)) and (best := fit.best(name))
     ]
-    columns = "parameter", "group", "estimate", "no_sign", "outlier", "errors"
+    columns = "parameter", "group", "best", "own", "no_sign", "outlier", "errors"
     frame = pd.DataFrame(fitted, columns=columns)
     curves, lines = Counter(row.group for row in rows), []
     for name in _NAMES:
         whole = frame[frame["parameter"] == name]
-        if all(e.held for e in whole["estimate"]):
+        if all(e.held for e in whole["own"]):
             continue
         groups = whole.groupby("group", sort=False) if len(curves) > 1 else ()
         parts = [(label(group), curves[group], part) for group, part in groups]
         for group, count, part in (*parts, ("all", len(rows), whole)):
-            estimates = [*part["estimate"]]
-            values = pd.Series([e.value for e in estimates])
+            estimates, values = [*part["own"]], pd.Series([e.value for e in part["best"]])
             line = {
                 "group": group,
                 "parameter": name,
@@ -145,7 +144,7 @@ def common_error(errors: Iterable[dict[str, float]]) -> dict[str, float]:
     """
     moved = pd.DataFrame([*errors])
     deviation = float(np.sqrt((moved.fillna(0.0).median() ** 2).sum()))
-    return {"common_error": threshold_of(np.inf) ** 0.5 * deviation} if moved.size else {}
+    return {"common_error": threshold_of(np.inf) ** 0.5 * deviation} if deviation else {}
 
 
 def label(group: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -27,7 +28,7 @@ def save_tables(rows: Sequence[Row], stem: Path) -> list[Path]:
     lines = []
     for row in rows:
         verdict = row.fit.headline if row.accepted else f"not accepted: {row.reason}"
-        line = {"curve": for_document(row.name), "verdict": verdict}
+        line = {"curve": " ".join(for_document(row.name).splitlines()), "verdict": verdict}
         for unit, head, name in ((_KILOPASCAL, *modulus), (_MILLINEWTON, "tension", "tension")):
             e = row.fit.estimates().get(name)
             is_known = e is not None and (e.value or not e.held)
@@ -43,7 +44,7 @@ def save_tables(rows: Sequence[Row], stem: Path) -> list[Path]:
         ".csv": frame.to_csv(index=False, lineterminator="\n"),
         ".md": "".join(f"| {line} |\n" for line in marked),
         # In the usual font encoding these are other characters.
-        ".tex": latex.replace("<", "$<$").replace(">", "$>$"),
+        ".tex": re.sub("[<>|]", r"$\g<0>$", latex),
     }
     for ending, text in texts.items():
         with atomic_write(stem.with_suffix(ending)) as part:

@@ -191,7 +191,7 @@ def groups(of: Sequence[Row], *, si: bool = False) -> Table:
         if part["no_sign"] == part["n"]:
             ends = "no sign", ""
         cells.append((*named, *counts, *ends, *([error] if has_error else [])))
-    caption = "All accepted curves; open, those whose interval is open or wide."
+    caption = "All accepted curves; open, those that quote no value."
     return Table.of_rows(heads, cells, caption) if cells else Table([])
 
 

@@ -102,6 +102,7 @@ def _of_options(
     """Yield what another option of the fit would mend."""
     flaws = {flaw for judgement in answer.judgements for flaw in judgement.flaws}
     types = answer.selected.types
+    undescribed = answer.verdict is Verdict.UNDESCRIBED
     if (Flaw.DRIFT in flaws or "slope" in types) and config.baseline != "slope":
         yield Advice(Remedy.FIT_SLOPE)
     elif (Flaw.OFFSET in flaws or "offset" in types) and config.baseline == "none":
@@ -112,9 +113,10 @@ def _of_options(
         yield Advice(Remedy.DELETE_SPIKES)
     if answer.verdict is Verdict.CANNOT_TELL and left_out:
         yield Advice(Remedy.FIT_BOTH, {"first": left_out[0], "last": left_out[1]})
-    if config.thickness is None and any("layer" in fit.types for fit in answer.tied):
+    is_layer = not undescribed and any("layer" in fit.types for fit in answer.tied)
+    if config.thickness is None and is_layer:
         yield Advice(Remedy.GIVE_THICKNESS, {"needs_ratio": config.poissons_ratio is None})
-    if answer.untried and answer.verdict is Verdict.UNDESCRIBED:
+    if answer.untried and undescribed:
         yield Advice(Remedy.FIT_APPROACH)
 
 

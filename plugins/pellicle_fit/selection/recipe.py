@@ -17,27 +17,15 @@ from pellicle_fit.effect import Effect, Records, Responds, Solid
 from pellicle_fit.estimation.candidate import NONE, Candidate, Types, best_of
 from pellicle_fit.estimation.coordinates import CONTACT_POINT, MODULUS
 from pellicle_fit.estimation.intervals import End, Estimate, common_value, estimates, threshold_of
-from pellicle_fit.estimation.noise import CHANCE, Flaw, ResidualCheck
+from pellicle_fit.estimation.noise import CHANCE, ResidualCheck
 from pellicle_fit.strangers import refuse_broken, strangers_named
 
+from .baseline import baseline_of, named
 from .neighbour import Neighbour
-from .rivals import Question, comparison
-from .verdict import (
-    MANY_MARGIN,
-    MARGIN,
-    SMALL,
-    Decision,
-    Fits,
-    Verdict,
-    choice,
-    decision,
-    doubtful,
-    ties,
-)
+from .rivals import Question, at_common_noise, comparison
+from .verdict import MANY_MARGIN, MARGIN, SMALL, Decision, Verdict, choice, decision, doubtful, ties
 
 TENSION, DRAINING = "tension", "poroelastic"
-BASELINE = frozenset({"offset", "slope"})
-"""Effects of a baseline."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +54,8 @@ class Answer:
     """Explanations that curves alike rule out."""
     baseline: tuple[Effect, ...] = ()
     """Rivals of the instrument that the curves need, so that all explanations have them."""
+    elsewhere: Candidate | None = None
+    """With another contact point than a given one, what describes the curve where that does not."""
 
     @property
     def verdict(self) -> Verdict:
@@ -313,28 +303,27 @@ def answer(
         tuple(untried),
         tuple(not_weighed),
         baseline,
+        _elsewhere(question, fits, margin),
     )
 
 
-def baseline_of(best: Candidate, fits: Fits, *, inadequate: bool) -> Types:
-    """Return what of a baseline the best explanation needs, or shows to lack.
-
-    It is of the instrument, and no rival of what the solid does, if nothing without it comes near:
-    it then acts beside all.
-    """
-    # A slope may stand for what no model describes before an offset is taken off.
-    for own in (best.types & BASELINE, *([best.types & {"offset"}] if inadequate else [])):
-        others = [fit.aic for types, fit in fits.items() if not own <= types]
-        if others and min(others) - best.aic >= MANY_MARGIN:
-            return own
-    lacks = any(Flaw.OFFSET in checked.flaws for checked in best.judgements)
-    return frozenset({"offset"} if lacks else ()) - best.objective.explanation.types
-
-
-def named(types: Types, rivals: Iterable[Sequence[Effect]]) -> tuple[Effect, ...]:
-    """Return those of rivals that have some types."""
-    effects = {effect.type_name: effect for rival in rivals for effect in rival}
-    return tuple(effects[name] for name in sorted(types & effects.keys()))
+def _elsewhere(
+    question: Question, fits: Mapping[Types, Candidate], margin: float
+) -> Candidate | None:
+    """Return the best simple explanation that touches elsewhere than given, if it is so good."""
+    if question.solid.contact_point is None:
+        return None
+    solid = question.solid.of_values({CONTACT_POINT: None})
+    simple = {NONE: fits[NONE], question.of_target: fits[question.of_target]}
+    of = [fit.objective.explanation for fit in simple.values()]
+    free = dict(zip(simple, (replace(one, solid=solid) for one in of), strict=True))
+    curves = tuple(replace(curve, touch=None) for curve in fits[NONE].whole)
+    memory = fits[NONE].objective.memory
+    elsewhere = best_of(comparison(question.of_target, free, curves, memory=memory).values())
+    moved = frozenset({CONTACT_POINT})
+    known = at_common_noise({**fits, moved: elsewhere})
+    given, best = (best_of(known[t] for t in some).aic for some in (simple, fits))
+    return elsewhere if known[moved].aic < min(given - MANY_MARGIN, best + margin) else None
 
 
 def with_estimates(

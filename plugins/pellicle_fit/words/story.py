@@ -12,10 +12,10 @@ import numpy as np
 from pellicle.units import decimal, readable
 from pellicle_fit.dynamic import depths
 from pellicle_fit.estimation.candidate import NONE, Candidate
-from pellicle_fit.estimation.coordinates import MODULUS
+from pellicle_fit.estimation.coordinates import CONTACT_POINT, MODULUS
 from pellicle_fit.estimation.intervals import CONFIDENCE
 from pellicle_fit.estimation.moduli import misfit
-from pellicle_fit.estimation.noise import Flaw
+from pellicle_fit.estimation.noise import Flaw, is_straight
 from pellicle_fit.files.measurement import Note
 from pellicle_fit.record import Record
 from pellicle_fit.selection.recipe import Answer
@@ -181,7 +181,14 @@ def _remarks_of_sines(answer: Answer) -> Iterator[str]:
 
 
 def remarks(answer: Answer) -> Iterator[str]:
-    """Yield a warning of a modulus that is not held, and notes of what was added or left out."""
+    """Yield warnings of what does without the modulus, and notes of what was added or left out."""
+    if any(map(is_straight, answer.selected.whole)):
+        yield "a straight line describes the forces as well: perhaps there is no contact"
+    if fit := answer.elsewhere:
+        known = (fit.parameters[name] for name in (CONTACT_POINT, MODULUS))
+        place, modulus = (readable(e.value, e.unit, 3) for e in known)
+        other = f"{words_of(fit)} with a modulus of {modulus}"
+        yield f"the contact point is given, and may be wrong: with {place}, {other} would do"
     for fit in answer.not_held:
         modulus = readable(fit.estimates[MODULUS].value, "Pa", 3)
         yield f"the modulus is not held: with {words_of(fit)} one of {modulus} would do as well"

@@ -396,6 +396,28 @@ def test_flaws_are_seen(change: Any, flaw: Flaw | None) -> None:
     assert flaw in found if flaw else not found
 
 
+@pytest.mark.parametrize("noise", [3e-3, 0.03, 0.1])
+@pytest.mark.parametrize("offset", [-0.5, 0.0, 5.0])
+def test_a_baseline_without_contact_is_told(noise: float, offset: float) -> None:
+    """One that slopes gives moduli, some of them narrow; no contact is as straight."""
+    (position, force), random = curve(noise=noise), np.random.default_rng(5)
+    line = np.linspace(0, 1, force.size) + offset + noise * random.standard_normal(force.size)
+    told = [fit(position, f, model=()).messages for f in (1e-9 * line, force)]
+    assert [any("no contact" in text for text in messages) for messages in told] == [True, False]
+
+
+@pytest.mark.parametrize("tension", [0.0, TENSION])
+@pytest.mark.parametrize("off", [0.0, -0.05, 0.05])
+def test_a_contact_point_that_is_given_wrong_is_told(tension: float, off: float) -> None:
+    """A twentieth of the depth makes a tension of nothing or hides one; 0 is not doubted."""
+    position, force = curve(tension)
+    rivals = ["rough_toe", "softening", "offset"]
+    found = fit(position + off * TOP, force, rivals=rivals, fix={"contact_point": 1e-6})
+    warned = [text for text in found.messages if "contact point is given" in text]
+    assert bool(warned) == bool(off)
+    assert not warned or ("tension" in warned[0]) == bool(tension)
+
+
 def test_noise_of_1_over_f_is_taken_so() -> None:
     """Intervals of correlated noise hold the modulus, and are wider than those of white noise."""
     position, clean = curve(points=600, noise=0.0)
@@ -432,15 +454,17 @@ def test_relaxation_beside_a_tension_has_no_model_of_retraction() -> None:
 
 
 @pytest.mark.parametrize(
-    "options", [{"thickness": "free", "poissons_ratio": 0.5}, {"model": ["brush"]}]
+    "options",
+    [{"thickness": "free", "poissons_ratio": 0.5}, {"model": ["brush"]}, {"rivals": ["layer"]}],
 )
 def test_of_what_no_model_describes_some_quantities_have_ends(options: Any) -> None:
     """Those that were asked for, and no others; all of it can be said."""
     position, force = curve()
-    force[position > 1e-6 + TOP / 2] *= 0.8
+    force = np.minimum(force, 0.9 * force.max())
     found = fit(position, force, baseline="offset", **options)
     assert found.verdict is Verdict.UNDESCRIBED
     assert "not to be quoted" in repr(found)
+    assert "describes the curve" not in repr(found)
     asked = set(found.answer.question.wanted) | {"reduced_modulus", "tension", "contact_point"}
     assert found.to_dict()["parameters"].keys() == asked & found.answer.selected.parameters.keys()
 

@@ -232,6 +232,10 @@ def test_commas_that_are_both_are_refused(tmp_path: Path, columns: str | None) -
     (tmp_path / "b.csv").write_text(text, encoding="utf-8")
     with pytest.raises(pl.ConfigError, match="each second of which looks like decimals"):
         curves(tmp_path / "b.csv", BY_NUMBER)
+    two = "".join(f"{n},{n}00\n" for n in range(1, 9))
+    (tmp_path / "b.csv").write_text(two, encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match="has '1', '2'; missing"):
+        curves(tmp_path / "b.csv", None)
     (tmp_path / "b.csv").write_text(text.replace(",", ";"), encoding="utf-8")
     assert curves(tmp_path / "b.csv", BY_NUMBER)[""].position[0] == pytest.approx(9e-6)
 

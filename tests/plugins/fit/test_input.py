@@ -120,6 +120,9 @@ def test_wrong_radius_is_noticed(indenter: str) -> None:
     """A radius smaller by a thousand is doubted; the contact of a sphere ends at its equator."""
     fit = pl.fit(*_curve(), indenter=indenter, radius=RADIUS / 1000)
     assert fit.advice.startswith("check radius and units")
+    for radius in (1e-40, 1e8):
+        with pytest.raises(pl.ConfigError, match=r"indenter.radius: is .*; check the units"):
+            pl.fit(*_curve(), indenter=indenter, radius=radius, rivals=["adhesion"])
 
 
 SHUFFLED = np.random.default_rng(0).permutation(300)

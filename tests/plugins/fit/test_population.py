@@ -208,16 +208,18 @@ def test_statistics_are_of_all_accepted_curves(curves: list[tuple[Any, ...]]) ->
 
 
 def test_of_explanations_that_share_no_value_the_chosen_one_counts() -> None:
-    """It is not quoted, but obeys rules and is in the median; no sign of a tension is said once."""
+    """Not quoted, so open, it obeys rules and counts; no sign of a tension is said once."""
     rows = [row(f"{k}", 1e3 + k, tension=estimate(1e-3, "N/m", (None, 2.0))) for k in range(3)]
     for one in rows:
         told = one.fit.data["parameters"][MODULUS] | {"value": None}
-        one.keep(one.fit.data | {MODULUS: told, "if_present": {"tension": {}}})
+        own = {"if_present": {"tension": {}}, "common_errors": {MODULUS: {"radius": 0.0}}}
+        one.keep(one.fit.data | own | {MODULUS: told})
         assert np.isnan(one.fit.values()[MODULUS])
     judge(rows, ["reduced_modulus > 1 kPa"], None)
     assert [one.accepted for one in rows] == [False, True, True]
     parts = {part["parameter"]: part for part in summary(rows)}
     assert parts[MODULUS]["median"] == 1001.5
+    assert (parts[MODULUS]["open"], parts[MODULUS].get("common_error")) == (2, None)
     assert parts["tension"]["no_sign"] == parts["tension"]["n"] == 2
     (column,) = (c for c in tables.groups(rows).columns if c.words == "median")
     assert column.values[1] == "no sign"

@@ -176,7 +176,7 @@ def test_table_for_a_paper(tmp_path: Path) -> None:
         row("a_1|%.csv", 2e3, tension=estimate(3e-3, "N/m")),
         row("b.csv", 2e6, is_open=True, tension=estimate(3e-6, "N/m", (None, 1.1))),
         row("c.csv", 2.5, tension=none),
-        row("d.csv", None),
+        row("d\nd.csv", None),
     ]
     judge(rows, [], None)
     files = save_tables(rows, tmp_path / "t")
@@ -188,11 +188,11 @@ def test_table_for_a_paper(tmp_path: Path) -> None:
         ["a_1|%.csv", "no sign of tension", "2.00", "1.80 to 2.20", "3.00", "2.70 to 3.30", "50"],
         ["b.csv", "no sign of tension", "", "> 1800", "", "< 0.0033", "50"],
         ["c.csv", "no sign of tension", "0.00250", "0.00225 to 0.00275", "", "", "50"],
-        ["d.csv", "not accepted: failed: no contact", "", "", "", "", ""],
+        ["d d.csv", "not accepted: failed: no contact", "", "", "", "", ""],
     ]
     marked, typeset = (file.read_text(encoding="utf-8") for file in files[1:])
     assert "| a_1\\|%.csv | no sign of tension | 2.00 | 1.80 to 2.20 |" in marked
-    assert "a\\_1|\\%.csv & no sign of tension & 2.00 & 1.80 to 2.20 &" in typeset
+    assert "a\\_1$|$\\%.csv & no sign of tension & 2.00 & 1.80 to 2.20 &" in typeset
     assert "& $<$ 0.0033 & 50" in typeset
     assert marked.count("\n") == len(rows) + 2
 
@@ -397,19 +397,23 @@ def test_read_curves_and_draw_them(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("no_rivals")
-def test_the_folder_of_one_fit_is_shown_and_drawn(cli: Cli) -> None:
+@pytest.mark.parametrize(
+    ("files", "name"), [([], f"{FILE.stem}-fit"), (["b.csv", "--pool"], "pool")]
+)
+def test_the_folder_of_one_fit_is_shown_and_drawn(cli: Cli, files: list[str], name: str) -> None:
     """It shows what was printed; a curve that has changed is not drawn as if it had not."""
-    measure(FILE)
-    printed = cli(str(FILE), *OPTIONS, "-o", "out")
-    told, _, files = printed.stdout.partition("wrote ")
-    assert "out/Bead 1 µ-fit.h5" in files
+    for file in ("b.csv", FILE):
+        measure(Path(file))
+    printed = cli(*files[:1], str(FILE), *files[1:], *OPTIONS, "-o", "out")
+    told, _, written = printed.stdout.partition("wrote ")
+    assert f"out/{name}.h5" in written
 
     assert call("show", "out").stdout == told
     assert " Pa (" in call("show", "out", "--si").stdout
-    content = Path("out/Bead 1 µ-fit.json").read_text(encoding="ascii")
-    assert call("show", "out", "--json").stdout == content
+    whole = Path(f"out/{name}.json").read_text(encoding="ascii")
+    assert call("show", "out", "--json").stdout == whole
     call("plot", "out", "-o", "again", "--format", "svg")
-    assert Path("again/Bead 1 µ-fit.svg").is_file()
-    with FILE.open("a") as file:
-        file.write("9,9\n")
+    assert Path(f"again/{name}.svg").is_file()
+    with FILE.open("a") as content:
+        content.write("9,9\n")
     assert "has changed since it was fitted" in call("plot", "out", code=2).stderr
