@@ -237,7 +237,7 @@ def _jump_energy(
         if not as_whole and (excess(pair) <= 0 or pair[0].loss(pair[1]) < _STAYS * lost):
             return 0.0
     if not as_whole:
-        return lost if excess(pair) > 0 else 0.0
+        return 0.0 if excess(pair) <= 0 else lost
     return of_parts + pair[0].loss(pair[1]) * (excess(pair) > 0)
 
 
