@@ -30,7 +30,7 @@ def with_ends(
     far less, in second differences, than the surface does at a cell of its edge.  All arrays have
     the grid's shape (nx, ny), gap and displacement in m.
     """
-    bent = np.where(contact, -_bends(displacement, boundary), 0.0).max(axis=0)
+    bent = np.fmax.reduce(np.where(contact, -_bends(displacement, boundary), 0.0), initial=0.0)
     bends = np.abs(_bends(np.where(np.isfinite(heights), heights, np.nan), boundary))
     smooth = bends <= _SMOOTH * bent.max(initial=0.0)
     if contact.all() or not smooth.any():
@@ -53,8 +53,9 @@ def with_ends(
 
 
 def _bends(field: Array, boundary: Boundary) -> Array:
-    """Return the second differences of a field along each axis, of shape (2, nx, ny)."""
-    padded = np.pad(field, 1, mode="wrap" if boundary == "periodic" else "edge")
+    """Return the second differences along each axis, of shape (2, nx, ny); NaN at a free edge."""
+    periodic = boundary == "periodic"
+    padded = np.pad(field, 1, "wrap") if periodic else np.pad(field, 1, constant_values=np.nan)
     rows, columns = padded[:, 1:-1], padded[1:-1]
     with np.errstate(invalid="ignore"):
         return np.stack(
