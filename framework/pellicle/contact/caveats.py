@@ -122,6 +122,12 @@ class Status(Enum):
         "{least:g}: the surface near it may be far off; use more points, or a smaller grid.size",
         "the cells are too coarse for this load",
     )
+    COARSE_LINE = (
+        "converged, but a line force without a width is spread over a cell, {width:m} wide, and "
+        "its ridge lacks about {share:.0%} of its height; use more points or a smaller grid.size, "
+        "or give the load a width",
+        "the cells are too coarse for this load",
+    )
     STEEP = (
         "converged, but slopes in contact reach {slope:.2f}, and the theory is for slopes up to "
         "{most:g}: force and area are those of the model, not of the experiment",
@@ -176,6 +182,7 @@ class Status(Enum):
             Status.COARSE: "too coarse",
             Status.COARSE_ZONE: "too coarse",
             Status.COARSE_LOAD: "too coarse",
+            Status.COARSE_LINE: "too coarse",
         }.get(self, usual)
 
 
