@@ -81,6 +81,10 @@ class Status(Enum):
         "and area are wrong; enlarge grid.size = {size_x:m} × {size_y:m} or press in less far "
         "(loading.{prescribed} = {value:unit})"
     )
+    BEYOND_EDGE = (
+        "the lowest point of the indenter lies outside the domain, so nothing touches within; "
+        "enlarge grid.size = {size_x:m} × {size_y:m}, or move the indenter"
+    )
     ZONE_AT_EDGE = (
         "the zone in which the interaction pulls reaches the edge of the domain, where the "
         "indenter does not end, so the force is wrong; enlarge grid.size = {size_x:m} × "
@@ -170,7 +174,7 @@ class Status(Enum):
     @property
     def at_edge(self) -> bool:
         """Whether the domain is too small."""
-        return self in (Status.CONTACT_AT_EDGE, Status.ZONE_AT_EDGE)
+        return self in (Status.CONTACT_AT_EDGE, Status.BEYOND_EDGE, Status.ZONE_AT_EDGE)
 
     @property
     def verdict(self) -> str:
