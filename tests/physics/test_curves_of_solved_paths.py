@@ -123,21 +123,17 @@ def test_on_a_cone_it_is_the_closed_theory() -> None:
 
 def test_a_curve_that_still_falls_at_its_end_has_no_lowest_force() -> None:
     """An edge holds −1 N, and a contact beyond the path less."""
-    force = np.array([-1.0, 1.0, -0.5, -2.0, -3.0, 1.0])
-    radius = np.array([1.0, 1.0, 2.0, 3.0, 4.0, 5.0])
-    curve = AdhesiveCurve(radius, force, force)
-    assert curve.instability().force < -2.9
-    cut = AdhesiveCurve(*(values[:-1] for values in curve))
-    assert np.isnan([*cut.instability(), *cut.instability(inf)]).all()
+    force, radius = np.array([-1.0, 1.0, -0.5, -2.0, -3.0, 1.0]), np.array([1.0, *range(1, 6)])
+    assert AdhesiveCurve(radius, force, force).instability().force < -2.9
+    assert np.isnan(AdhesiveCurve(radius[:-1], force[:-1], force[:-1]).instability()).all()
 
 
 def test_heights_in_memory_have_a_curve() -> None:
     """Of a truncated cone as an array the configuration keeps the hash alone."""
     x = (np.arange(48) - 23.5) / 8
     cone = heights(-0.7 * np.maximum(np.hypot(x[:, None], x) - 0.8, 0))
-    path = {"depth": {"start": 0.01, "stop": 1.2, "num": 16, "spacing": "log"}, "stiffness": True}
-    solved = steps(
-        grid={"points": 48, "size": 6.0}, kernel=tensed(1.0, 0.0), indenter=cone, loading=path
-    )
+    load = {"depth": [*np.geomspace(0.01, 1.2, 16)], "stiffness": True}
+    grid = {"points": 48, "size": 6.0}
+    solved = steps(grid=grid, kernel=tensed(1.0, 0.0), indenter=cone, loading=load)
     end = curve_of(solved, 0.1).instability()
     assert end.force == pytest.approx(-sqrt(8 * pi * 0.1 * end.contact_radius**3), rel=0.03)
