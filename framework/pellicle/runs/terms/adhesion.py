@@ -192,9 +192,9 @@ def _jump_energy(
     loses the rest. That counts if it is more than the trapezoidal rule may miss, so every jump
     shows once the steps are small enough. Unless it ``is_certain``, the step is halved where most
     is missing: what a bend of the force misses falls with the step, and is no jump; what a jump
-    loses stays. Where contact begins or ends as a whole it is halved there, and the loss is that of
-    the parts. Energies are known to the tolerance of their elastic and adhesive parts, which may
-    cancel.
+    loses stays. Where contact begins or ends as a whole it is halved there, unless the loss of a
+    certain jump shows already, and the loss is that of the last part. Energies are known to the
+    tolerance of their elastic and adhesive parts, which may cancel.
 
     NaN where the energy is not known, or the last step did not converge.
     """
@@ -215,12 +215,12 @@ def _jump_energy(
     def excess(pair: tuple[_Point, _Point]) -> float:
         return pair[0].loss(pair[1]) - pair[0].missed(pair[1]) - noise
 
-    if excess(pair) <= 0 and not as_whole:
+    is_hidden = excess(pair) <= 0
+    if is_hidden and not as_whole:
         return 0.0
     ends = control_of(problem, last.state), problem.value
-    of_parts = 0.0
-    halvings = _REFINEMENTS * (1 + is_certain)
-    for _ in range(0 if (is_certain and not as_whole) or np.isnan(lost) else halvings):
+    halvings = 0 if is_certain and not is_hidden else _REFINEMENTS * (1 + is_certain)
+    for _ in range(0 if np.isnan(lost) else halvings):
         middle = 0.5 * (ends[0] + ends[1])
         halved = replace(problem, control=replace(problem.control, value=middle))
         solution = solution_of(run.solver, halved, pair[0].state, surroundings.monitor)
@@ -231,14 +231,12 @@ def _jump_energy(
         halves = (pair[0], point), (point, pair[1])
         later = point.state.contact.any() == pair[0].state.contact.any()
         worse = int(later if as_whole else excess(halves[1]) > excess(halves[0]))
-        pair, other = halves[worse], halves[1 - worse]
-        ends = ((ends[0], middle), (middle, ends[1]))[worse]
-        of_parts += other[0].loss(other[1]) * (excess(other) > 0)
+        pair, ends = halves[worse], ((ends[0], middle), (middle, ends[1]))[worse]
         if not as_whole and (excess(pair) <= 0 or pair[0].loss(pair[1]) < _STAYS * lost):
             return 0.0
-    if not as_whole:
-        return 0.0 if excess(pair) <= 0 else lost
-    return of_parts + pair[0].loss(pair[1]) * (excess(pair) > 0)
+    if excess(pair) <= 0:
+        return 0.0
+    return pair[0].loss(pair[1]) if as_whole else lost
 
 
 def _point_of(equilibrium: AdhesiveEquilibrium) -> _Point:
