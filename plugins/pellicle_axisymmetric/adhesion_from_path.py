@@ -61,10 +61,10 @@ class AdhesiveCurve(AdhesiveContact):
         )
         rises, pinned = np.diff(fixed_quantity) >= 0, np.diff(self.contact_radius) == 0
         minima = np.flatnonzero(np.append(pinned[:1], ~rises[:-1]) & rises)
-        if not minima.size:
+        # A contact that jumps at a minimum may be held at a lower one, or beyond the last radius.
+        lowest = int(minima[fixed_quantity[minima].argmin()]) if minima.size else -1
+        if fixed_quantity[lowest] >= fixed_quantity[-1]:
             return AdhesiveContact(*np.full(3, nan))
-        # A contact that jumps at a minimum may be held at a lower one.
-        lowest = int(minima[fixed_quantity[minima].argmin()])
         if pinned[lowest]:
             return AdhesiveContact(*(np.asarray(y[lowest]) for y in self))
         # The vertex of the parabola through the lowest point and its neighbours.

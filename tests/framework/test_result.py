@@ -222,7 +222,7 @@ VALUES: dict[str, float | str] = {
     "prescribed": "depth",
     "reason": "no memory",
 }
-NUMBERS = re.compile(r"{(\w+):(?:[mNJ]|count|g|\.\d[ef])}")
+NUMBERS = re.compile(r"{(\w+):(?:[mNJ]|count|g|\.\d[ef%])}")
 
 
 def _filled(status: Status) -> Caveat:

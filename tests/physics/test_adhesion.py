@@ -191,6 +191,7 @@ def test_a_step_across_the_lowest_force_does_not_jump() -> None:
     [
         ("linear", 0.5, 2.0, 6, 0),
         ("linear", 0.5, 2.0, 24, 0),
+        ("jkr", 0.0, 0.0, 2, 2),
         pytest.param("dugdale", 0.0, 1.5, 6, 1, marks=pytest.mark.slow),
         pytest.param("exponential", 0.0, 0.7, 24, 2, marks=pytest.mark.slow),
         pytest.param("linear", 0.2, 0.8, 6, 2, marks=pytest.mark.slow),
@@ -201,7 +202,7 @@ def test_a_loss_that_falls_with_the_step_is_no_jump(
     law: str, length: float, reach: float, steps: int, jumps: int
 ) -> None:
     """A step that jumps loses as much in 16 parts; where contact begins smoothly none is named."""
-    interaction = {"type": law, "work_of_adhesion": 1.0, "range": reach}
+    interaction = {"type": law, "work_of_adhesion": 1.0} | ({"range": reach} if reach else {})
     down = np.linspace(-2.5, 0.6, steps + 1)
 
     def path(depths: list[float]) -> Any:

@@ -14,7 +14,7 @@ from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid
 from pellicle_plugins.validation.adhesive_path import curve_of
 from tests.layered_contact import LayeredContact, layered_contact
-from tests.tables_of_runs import steps, tensed
+from tests.tables_of_runs import heights, steps, tensed
 
 # The equations are linear, so that lengths and loads may be convenient numbers.
 pytestmark = pytest.mark.filterwarnings("ignore:.*are those of the (equations|model)")
@@ -119,3 +119,21 @@ def test_on_a_cone_it_is_the_closed_theory() -> None:
     curve = solved_curve(tensed(1.0, 0.25), cone, (low, high), 4 * a, 128, 0.1)
     assert curve.instability().force == pytest.approx(pull_off.force, rel=0.01)
     assert curve.instability().contact_radius == pytest.approx(a, rel=0.01)
+
+
+def test_a_curve_that_still_falls_at_its_end_has_no_lowest_force() -> None:
+    """An edge holds −1 N, and a contact beyond the path less."""
+    force, radius = np.array([-1.0, 1.0, -0.5, -2.0, -3.0, 1.0]), np.array([1.0, *range(1, 6)])
+    assert AdhesiveCurve(radius, force, force).instability().force < -2.9
+    assert np.isnan(AdhesiveCurve(radius[:-1], force[:-1], force[:-1]).instability()).all()
+
+
+def test_heights_in_memory_have_a_curve() -> None:
+    """Of a truncated cone as an array the configuration keeps the hash alone."""
+    x = (np.arange(48) - 23.5) / 8
+    cone = heights(-0.7 * np.maximum(np.hypot(x[:, None], x) - 0.8, 0))
+    load = {"depth": [*np.geomspace(0.01, 1.2, 16)], "stiffness": True}
+    grid = {"points": 48, "size": 6.0}
+    solved = steps(grid=grid, kernel=tensed(1.0, 0.0), indenter=cone, loading=load)
+    end = curve_of(solved, 0.1).instability()
+    assert end.force == pytest.approx(-sqrt(8 * pi * 0.1 * end.contact_radius**3), rel=0.03)

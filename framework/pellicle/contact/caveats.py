@@ -81,6 +81,10 @@ class Status(Enum):
         "and area are wrong; enlarge grid.size = {size_x:m} × {size_y:m} or press in less far "
         "(loading.{prescribed} = {value:unit})"
     )
+    BEYOND_EDGE = (
+        "the lowest point of the indenter lies outside the domain, so nothing touches within; "
+        "enlarge grid.size = {size_x:m} × {size_y:m}, or move the indenter"
+    )
     ZONE_AT_EDGE = (
         "the zone in which the interaction pulls reaches the edge of the domain, where the "
         "indenter does not end, so the force is wrong; enlarge grid.size = {size_x:m} × "
@@ -120,6 +124,12 @@ class Status(Enum):
     COARSE_LOAD = (
         "converged, but the finest part of the load is {across:.1f} cells wide, where it takes "
         "{least:g}: the surface near it may be far off; use more points, or a smaller grid.size",
+        "the cells are too coarse for this load",
+    )
+    COARSE_LINE = (
+        "converged, but a line force without a width is spread over a cell, {width:m} wide, and "
+        "its ridge lacks about {share:.0%} of its height; use more points or a smaller grid.size, "
+        "or give the load a width",
         "the cells are too coarse for this load",
     )
     STEEP = (
@@ -164,7 +174,7 @@ class Status(Enum):
     @property
     def at_edge(self) -> bool:
         """Whether the domain is too small."""
-        return self in (Status.CONTACT_AT_EDGE, Status.ZONE_AT_EDGE)
+        return self in (Status.CONTACT_AT_EDGE, Status.BEYOND_EDGE, Status.ZONE_AT_EDGE)
 
     @property
     def verdict(self) -> str:
@@ -176,6 +186,7 @@ class Status(Enum):
             Status.COARSE: "too coarse",
             Status.COARSE_ZONE: "too coarse",
             Status.COARSE_LOAD: "too coarse",
+            Status.COARSE_LINE: "too coarse",
         }.get(self, usual)
 
 

@@ -11,8 +11,8 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 
 from .attraction import Attraction
-from .flats import with_flats
 from .problem import Adhesive, Force, Posed, Unilateral
+from .smooth_ends import with_ends
 from .solution import Solution, State
 
 # Traction over the strength of a law up to which a cell does not count as part of the zone.
@@ -87,8 +87,9 @@ class Equilibrium(Deformation):
 
     @cached_property
     def counted_contact(self) -> Mask:
-        """The contact as it is counted: `contact`, and of hard contact all of its flats."""
-        return with_flats(self.contact, self.problem.heights, self.gap, self.displacement)
+        """The contact as it is counted: `contact`, and of hard contact all of its smooth ends."""
+        boundary = self.problem.grid.boundary
+        return with_ends(self.contact, self.problem.heights, self.gap, self.displacement, boundary)
 
     @property
     def state(self) -> State:

@@ -89,7 +89,7 @@ class Result:
 
     def coarse(self) -> list[tuple[int, str]]:
         """Return number and status of each step whose cells are too coarse."""
-        return self._of(Status.COARSE, Status.COARSE_ZONE, Status.COARSE_LOAD)
+        return self._of(Status.COARSE, Status.COARSE_ZONE, Status.COARSE_LOAD, Status.COARSE_LINE)
 
     def steep(self) -> list[tuple[int, str]]:
         """Return number and status of each step with slopes beyond those of the theory."""

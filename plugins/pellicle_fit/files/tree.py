@@ -46,7 +46,8 @@ def read_tree(
     except (OSError, RuntimeError, ValueError, LookupError, MemoryError) as error:
         reason = getattr(error, "strerror", "") or error
         kind = "a MATLAB" if is_matlab else "an HDF5"
-        raise StorageError(f"{path}: cannot be read as {kind} file ({reason})") from None
+        remedy = "; copy a classic NetCDF to NetCDF-4: nccopy -k nc4" * (path.suffix == ".nc")
+        raise StorageError(f"{path}: cannot be read as {kind} file ({reason}){remedy}") from None
 
 
 def _arrays(node: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -176,8 +176,8 @@ def _require_kind(raw: Any, name: str, field: str) -> None:
 
 def checked_array(raw: Any, name: str, field: str, content: str = "heights") -> Array:
     """Return values as a new float64 array; refuse those that are masked or not finite."""
-    _require_kind(raw, name, field)
-    array = np.asarray(raw)
+    # A sparse matrix has a shape and a type, but is an object to numpy.
+    _require_kind(array := np.asarray(raw), name, field)
     bad = ~(np.abs(array) < _BEYOND)
     if masked := np.ma.isMaskedArray(raw):
         bad |= np.ma.getmaskarray(raw)

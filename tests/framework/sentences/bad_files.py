@@ -114,6 +114,7 @@ BYTES = {
     "junk.mat": b"no such thing",
     "broken.mat": b"MATLAB 5.0 MAT-file" + bytes(200),
     "broken.h5": b"\x89HDF\r\n\x1a\nbroken",
+    "classic.nc": b"CDF\x01",
     "list.csv": b"file,radius [um]\nelastic.csv,1\n,2\n",
     "empty.npy": b"",
     "junk.npy": b"junk junk",

@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 import pytest
 from scipy.io import savemat
+from scipy.sparse import csc_matrix
 
 import pellicle as pl
 from tests.plugins.outputs.shared import bead
@@ -129,6 +130,7 @@ def test_pickle_and_hash() -> None:
         (np.where(ROUGH > 0, np.inf, 0), "NaN or infinite heights"),
         ("junk", "give real numbers"),
         ([[1, None]], "give real numbers"),
+        (csc_matrix(ROUGH), "give real numbers"),
     ],
 )
 def test_bad_array(values: object, message: str) -> None:

@@ -192,9 +192,9 @@ def _jump_energy(
     loses the rest. That counts if it is more than the trapezoidal rule may miss, so every jump
     shows once the steps are small enough. Unless it ``is_certain``, the step is halved where most
     is missing: what a bend of the force misses falls with the step, and is no jump; what a jump
-    loses stays. Where contact begins or ends as a whole it is halved, and the loss is that of the
-    last part. Energies are known to the tolerance of their elastic and adhesive parts, which may
-    cancel.
+    loses stays. Where contact begins or ends as a whole it is halved there, unless the loss of a
+    certain jump shows already, and the loss is that of the last part. Energies are known to the
+    tolerance of their elastic and adhesive parts, which may cancel.
 
     NaN where the energy is not known, or the last step did not converge.
     """
@@ -215,11 +215,12 @@ def _jump_energy(
     def excess(pair: tuple[_Point, _Point]) -> float:
         return pair[0].loss(pair[1]) - pair[0].missed(pair[1]) - noise
 
-    as_whole = as_whole and not is_certain
-    if excess(pair) <= 0 and not as_whole:
+    is_hidden = excess(pair) <= 0
+    if is_hidden and not as_whole:
         return 0.0
     ends = control_of(problem, last.state), problem.value
-    for _ in range(0 if is_certain or np.isnan(lost) else _REFINEMENTS):
+    halvings = 0 if is_certain and not is_hidden else _REFINEMENTS * (1 + is_certain)
+    for _ in range(0 if np.isnan(lost) else halvings):
         middle = 0.5 * (ends[0] + ends[1])
         halved = replace(problem, control=replace(problem.control, value=middle))
         solution = solution_of(run.solver, halved, pair[0].state, surroundings.monitor)

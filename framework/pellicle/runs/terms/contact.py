@@ -70,6 +70,10 @@ def _failures(run: Run, step: ContactStep, around: AroundContact) -> Iterator[Ca
         yield Caveat(Status.CONTACT_AT_EDGE, edges | prescribed)
     elif _has_no_end(reach, boundary):
         yield Caveat(Status.ZONE_AT_EDGE, edges)
+    elif boundary == "free" and not reach.any() and _is_pressed(equilibrium):
+        heights = equilibrium.problem.heights
+        if min(heights.shape) > 2 and heights[1:-1, 1:-1].max() < heights.max():
+            yield Caveat(Status.BEYOND_EDGE, edges)
 
 
 def _has_no_end(reach: Mask, boundary: Boundary) -> bool:
@@ -90,17 +94,24 @@ def _has_no_end(reach: Mask, boundary: Boundary) -> bool:
 
 
 def _coarse(run: Run, equilibrium: Equilibrium) -> Iterator[Caveat]:
-    contact, problem = equilibrium.contact, equilibrium.problem
+    contact = equilibrium.contact
     # An interaction of a range of its own acts beyond the contact, however small that is.
     ranged = run.interaction is not None and run.interaction.cutoff() > 0
     cells = int(np.count_nonzero(contact | equilibrium.zone if ranged else contact))
     enough = _RESOLVED_ACROSS if min(contact.shape) == 1 else _RESOLVED
-    # A surface that was left behind may be out of the indenter's reach at a depth above 0.
-    least = problem.first_touch if problem.prescribed == "depth" else 0.0
     # An interaction holds a contact at any depth.
     sticks = run.interaction is not None and bool(contact.any())
-    if (problem.control.value > least or sticks) and cells < min(enough, contact.size):
+    if (_is_pressed(equilibrium) or sticks) and cells < min(enough, contact.size):
         yield Caveat(Status.COARSE, {"cells": cells, "width": run.grid.cell_size})
+
+
+def _is_pressed(equilibrium: Equilibrium) -> bool:
+    """Return whether what is prescribed asks for contact.
+
+    A surface that was left behind may be out of the indenter's reach at a depth above 0.
+    """
+    problem = equilibrium.problem
+    return problem.control.value > (problem.first_touch if problem.prescribed == "depth" else 0.0)
 
 
 def _steep(run: Run, equilibrium: Equilibrium) -> Iterator[Caveat]:
