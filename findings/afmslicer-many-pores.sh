@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Guess: calculate_region_properties of AFMSlicer has one entry for each label of the segmented image,
-#   as its twin for stacks of layers (region_properties_by_slices) has.
+# Guess: calculate_region_properties of AFMSlicer has one entry for each label of the segmented
+#   image, as its twin for stacks of layers (region_properties_by_slices) has.
 # Version: afmslicer 0.0.1 (without TopoStats, which this module does not use)
 # Behaviour: it counts labels in 8 bits with a sign. From 128 pores on, labels are negative and left
 #   out; beyond 256 they begin again and pores far apart are one of twice the area. The twin has

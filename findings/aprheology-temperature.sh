@@ -5,8 +5,8 @@
 # Version: aprheology 0.3.2 (without its window)
 # Behaviour: the mean is rounded to whole degrees, without a word, for the table, the plots, the
 #   choice of curves and the activation energy. Curves at 60.8 and 61.2 degrees are two at 61.
-# Output seen: 80 kJ/mol; curves at 60.0 and 65.0 degrees: 79.9; at 60.4 and 64.6 (taken as 60 and 65):
-#   67.1; at 60.4 and 61.6 (taken as 60 and 62): 48.0
+# Output seen: 80 kJ/mol; curves at 60.0 and 65.0 degrees: 79.9; at 60.4 and 64.6 (taken as 60 and
+#   65): 67.1; at 60.4 and 61.6 (taken as 60 and 62): 48.0
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -2,8 +2,8 @@
 # Guess: of a Newtonian fluid, shear_modulus_laplace_transform of DLSuR gives G'' = eta omega at the
 #   frequencies that the lag times reach, perhaps less accurate at the ends.
 # Version: DLSuR 0.0.22 (with a numpy that still has np.float)
-# Behaviour: the Laplace integral stops at the last lag time, and moduli are given for every 1/t up to
-#   it, where most of the integral is missing. Over the slowest quarter of a decade the loss modulus
+# Behaviour: the Laplace integral stops at the last lag time, and moduli are given for every 1/t up
+#   to it, where most of the integral is missing. Over the slowest quarter of a decade the loss modulus
 #   is negative and the storage modulus far from zero, without a word. The local power law
 #   (shear_modulus) is exact there.
 # Output seen: G'' over eta omega at 1/t for t = 10, 1000, 6813, 10000 us: power law 1.00 1.00 1.00

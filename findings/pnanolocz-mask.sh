@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Guess: apply_level of pnanolocz (method "plane") takes a tilted plane off an image, whichever pixels
-#   its mask leaves out of the fit: there is nothing else in the image.
+# Guess: apply_level of pnanolocz (method "plane") takes a tilted plane off an image, whichever
+#   pixels its mask leaves out of the fit: there is nothing else in the image.
 # Version: pnanolocz 0.1.0
 # Behaviour: it fits the means of the columns, then those of the rows. Where a mask covers another
 #   part of each column, the tilt along the columns is in the means of the columns and is taken for

@@ -4,7 +4,7 @@
 # Version: pyotic 0.17.4 (with two names put back that Python has dropped since)
 # Behaviour: both are the drag along the wall: `lateral` has no effect. faxen_factor of the same
 #   module has the two cases, and its axial one is right.
-# Output seen: one radius above the wall (height 2 radii), over Stokes: drag lateral 1.391, axial 1.391;
+# Output seen: at a height of 2 radii, over Stokes: drag lateral 1.391, axial 1.391;
 #   faxen_factor lateral 1.386, axial 2.125
 set -euo pipefail
 folder=$(mktemp -d)

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Guess: contractillity of pyTFM sums the forces towards the force epicenter, "the point that
-#   maximizes the contractile force". Where all tractions point at one point, it is that one, and the
-#   contractile force is the sum of their magnitudes.
+#   maximizes the contractile force". Where all tractions point at one point, it is that one, and
+#   the contractile force is the sum of their magnitudes.
 # Version: pyTFM 1.3.5 (without clickpoints and solidspy, which this function does not use; with a
 #   newer OpenPIV than the one it asks for)
 # Behaviour: the equations for that point mix tractions in Pa with forces in N, which are 1e13 times
 #   as small: what is left is the mean position, weighted with the square of the tractions. A cell
 #   that pulls harder on one side has its centre there, and a contractile force that is too small.
-# Output seen: tractions that point at (30, 50): epicenter (29.9, 62.4), contractile force 0.946 of the
-#   sum of their magnitudes
+# Output seen: tractions that point at (30, 50): epicenter (29.9, 62.4), contractile force 0.946 of
+#   the sum of their magnitudes
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
