@@ -2,9 +2,9 @@
 # Guess: slice_3d of AFMSlicer, which takes "the appropriate number of slices" from the range of the
 #   heights and the scaling, finds a slice for each pixel.
 # Version: afmslicer 0.0.1 (without TopoStats, which this module does not use)
-# Behaviour: the range is rounded up to a whole number before it is divided by the thickness, and the
-#   quotient is cut off. Too few slices, and all that is above the last one is in none, except the
-#   very highest pixel; or slices above the surface.
+# Behaviour: the range is rounded up to a whole number before it is divided by the thickness, and
+#   the quotient is cut off. Too few slices, and all that is above the last one is in none, except
+#   the very highest pixel; or slices above the surface.
 # Output seen: heights 10.0 to 13.9, thickness 1.5: 2 slices, 3 of 8 pixels in none; heights 10.0 to
 #   14.0, thickness 1.0: 4 slices, 0 in none; heights 10.0 to 10.2, thickness 0.1: 10 slices
 set -euo pipefail

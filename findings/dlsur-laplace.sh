@@ -3,8 +3,8 @@
 #   frequencies that the lag times reach, perhaps less accurate at the ends.
 # Version: DLSuR 0.0.22 (with a numpy that still has np.float)
 # Behaviour: the Laplace integral stops at the last lag time, and moduli are given for every 1/t up
-#   to it, where most of the integral is missing. Over the slowest quarter of a decade the loss modulus
-#   is negative and the storage modulus far from zero, without a word. The local power law
+#   to it, where most of the integral is missing. Over the slowest quarter of a decade the loss
+#   modulus is negative and the storage modulus far from zero, without a word. The local power law
 #   (shear_modulus) is exact there.
 # Output seen: G'' over eta omega at 1/t for t = 10, 1000, 6813, 10000 us: power law 1.00 1.00 1.00
 #   1.00, Laplace 1.00 1.00 -0.43 -1.50; G' over eta omega at the last: 0.00 and 3.44

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Guess: calc_msd_raw and msd_local_pwr_law of DLSuR turn the same field correlation g1 into the same
-#   mean squared displacement, one as it is, one smoothed: -6 ln(g1) / q^2.
+# Guess: calc_msd_raw and msd_local_pwr_law of DLSuR turn the same field correlation g1 into the
+#   same mean squared displacement, one as it is, one smoothed: -6 ln(g1) / q^2.
 # Version: DLSuR 0.0.22 (with a numpy that still has np.float)
 # Behaviour: the raw one has the other sign: every displacement is negative. With replace_neg=True,
 #   its own remedy for negative values, none is left to interpolate between and it raises an error.
-# Output seen: free diffusion, displacement at 10, 100, 1000 us: true 6 60 600 nm^2,
-#   smoothed 6 60 600, raw -6 -60 -600; with replace_neg ValueError
+# Output seen: free diffusion, displacement at 10, 100, 1000 us: true 6 60 600 nm^2, smoothed 6 60
+#   600, raw -6 -60 -600; with replace_neg ValueError
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -2,9 +2,9 @@
 # Guess: generate_fbm_curve of fracDimPy makes a fractional Brownian profile of the dimension asked
 #   for, whatever its length: neighbouring increments have the correlation 2^(2H-1) - 1, H = 2 - D.
 # Version: fracDimPy 0.1.5
-# Behaviour: the spectrum is that of twice the length, the noise it shapes has the next power of two.
-#   Where that is much longer, the spectrum runs to its end and back within it: the slopes are as
-#   strong at the shortest wavelengths as at the longest, and increments are uncorrelated.
+# Behaviour: the spectrum is that of twice the length, the noise it shapes has the next power of
+#   two. Where that is much longer, the spectrum runs to its end and back within it: the slopes are
+#   as strong at the shortest wavelengths as at the longest, and increments are uncorrelated.
 # Output seen: D = 1.2, correlation of neighbouring increments (0.516 expected): 1024 points 0.49,
 #   1025 points 0.02, 2048 points 0.50, 2049 points 0.01
 set -euo pipefail

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Guess: the estimators of fracDimPy agree, within their scatter, on the dimension of the profile that
-#   its own generate_fbm_curve made; a profile is never below 1.
+# Guess: the estimators of fracDimPy agree, within their scatter, on the dimension of the profile
+#   that its own generate_fbm_curve made; a profile is never below 1.
 # Version: fracDimPy 0.1.5
-# Behaviour: structural_function and variogram_method do. hurst_dimension and dfa sum up what they are
-#   given, as if it were the slopes of a profile: a profile is summed twice. hurst_dimension is 1
-#   for any roughness, dfa is one too low, below that of a line, with R^2 = 0.998.
-# Output seen: D = 1.2, 1.5, 1.8: structural_function 1.20 1.50 1.81, variogram_method 1.21 1.51 1.81,
-#   hurst_dimension 0.99 1.00 1.02, dfa 0.20 0.50 0.83
+# Behaviour: structural_function and variogram_method do. hurst_dimension and dfa sum up what they
+#   are given, as if it were the slopes of a profile: a profile is summed twice. hurst_dimension is
+#   1 for any roughness, dfa is one too low, below that of a line, with R^2 = 0.998.
+# Output seen: D = 1.2, 1.5, 1.8: structural_function 1.20 1.50 1.81, variogram_method 1.21 1.51
+#   1.81, hurst_dimension 0.99 1.00 1.02, dfa 0.20 0.50 0.83
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Guess: generate_takagi_curve of fracDimPy makes a bounded profile of the dimension asked for with any
-#   base b > 1 that it accepts, the more exact the more levels it has.
+# Guess: generate_takagi_curve of fracDimPy makes a bounded profile of the dimension asked for with
+#   any base b > 1 that it accepts, the more exact the more levels it has.
 # Version: fracDimPy 0.1.5
 # Behaviour: the amplitude of a level is b^D / 4 of that before, which is b^(D - 2) for the base 2
 #   only. For another base the dimension is another one; from b = 4^(1/D) on each level is higher
 #   than the one before and the profile grows without end.
-# Output seen: D = 1.5, range of the heights for 5, 10, 15 levels: base 2: 0.97 1.11 1.13;
-#   base 3: 4.4 17.8 67.7; base 4: 13 439 14048
+# Output seen: D = 1.5, range of the heights for 5, 10, 15 levels: base 2: 0.97 1.11 1.13; base 3:
+#   4.4 17.8 67.7; base 4: 13 439 14048
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

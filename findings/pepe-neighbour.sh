@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Guess: calculateD2Min of pepe counts each particle within interactionRadius as a neighbour: one that
-#   moves alone is seen in the non-affine motion D2min, whichever it is.
+# Guess: calculateD2Min of pepe counts each particle within interactionRadius as a neighbour: one
+#   that moves alone is seen in the non-affine motion D2min, whichever it is.
 # Version: pepe-granular 1.2.9 (its one module, without the image tools of the others)
 # Behaviour: the first of the particles found is left out as the reference particle itself, but what
 #   is within a radius is not sorted by distance. A neighbour is left out, the reference is counted

@@ -5,7 +5,8 @@
 # Behaviour: it multiplies matrices with *, which for the arrays that it is given is done element by
 #   element. Simple shear has no strain at all; a stretch along the axes is right. With the same
 #   tensor as np.matrix the shear is right, too.
-# Output seen: strain of a shear of 0.2: array 0.0000, matrix 0.1005; of a stretch by 1.1: 0.0959, 0.0959
+# Output seen: strain of a shear of 0.2: array 0.0000, matrix 0.1005; of a stretch by 1.1: 0.0959,
+#   0.0959
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -2,8 +2,8 @@
 # Guess: with disp_measure="strain" ("the Green-Lagrange strain") pymecht stretches a sample by
 #   sqrt(2 E + 1): the same stress as with that stretch.
 # Version: pymecht 1.1.3 (without torch, which only its random parameters use)
-# Behaviour: the stretch is sqrt(E) + 1, in extension along one and along two axes. A strain of 1 % is
-#   a stretch of 1.10, and a small stress grows with the root of the strain.
+# Behaviour: the stretch is sqrt(E) + 1, in extension along one and along two axes. A strain of 1 %
+#   is a stretch of 1.10, and a small stress grows with the root of the strain.
 # Output seen: neo-Hookean bar, strain 0.01, 0.04, 0.20: stress over that of the true stretch 10.08
 #   5.15 2.53; with stretches 1.00
 set -euo pipefail

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Guess: phi_n, "angle of maximal principal stress" of all_stress_measures in pyTFM, points along the
-#   largest tension: the stress on a cut across it is sigma_max.
+# Guess: phi_n, "angle of maximal principal stress" of all_stress_measures in pyTFM, points along
+#   the largest tension: the stress on a cut across it is sigma_max.
 # Version: pyTFM 1.3.5 (without clickpoints, solidspy and openpiv, which this function does not use)
 # Behaviour: it is half an arctan of a quotient, which cannot tell sigma_x > sigma_y from the
 #   opposite. Where sigma_y is the larger one the angle is that of the smallest tension, 90 degrees
 #   off. sigma_max itself is right everywhere.
-# Output seen: tension at 20 degrees: phi_n 20.0, stress along it 3.00 (sigma_max 3.00);
-#   tension at 70 degrees: phi_n -20.0, stress along it 1.00 (sigma_max 3.00)
+# Output seen: tension at 20 degrees: phi_n 20.0, stress along it 3.00 (sigma_max 3.00); tension at
+#   70 degrees: phi_n -20.0, stress along it 1.00 (sigma_max 3.00)
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
