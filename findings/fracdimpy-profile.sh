@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Guess: the estimators of fracDimPy agree, within their scatter, on the dimension of the profile
-#   that its own generate_fbm_curve made; a profile is never below 1.
+# Guess: the estimators of fracDimPy, used as its readme shows, agree on the dimension of the
+#   profile that its own generate_fbm_curve made, within their scatter; a profile is never below 1.
 # Version: fracDimPy 0.1.5
 # Behaviour: structural_function and variogram_method do. hurst_dimension and dfa sum up what they
 #   are given, as if it were the slopes of a profile: a profile is summed twice. hurst_dimension is
