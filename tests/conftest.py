@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, settings
 
 from tests import durations
 
@@ -26,6 +27,11 @@ if TYPE_CHECKING:
     from selenium.webdriver import Chrome
 
     from tests.command import Cli
+
+
+# A busy machine is slow, which says nothing of the code.
+settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("busy")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

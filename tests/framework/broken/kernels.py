@@ -94,6 +94,7 @@ BROKEN: dict[str, Any] = {
     ],
     "compliance_is_positive_and_finite": [
         *(bad(fault, value) for fault, value in (("zero", 0.0), ("nan", np.nan))),
+        Broken("text", RULE, compliance=lambda f, q: np.full(q.shape, "stiff")),
         Broken("short", OTHERS, compliance=lambda f, q: np.where(q > 1e7, np.nan, f(q))),
     ],
     "compliance_does_not_grow_for_short_waves": [

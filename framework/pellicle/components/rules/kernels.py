@@ -61,6 +61,8 @@ def compliance_is_positive_and_finite(kernel: Kernel, case: Case) -> str:
     values = np.asarray(
         kernel.compliance(qx.copy()) if kernel.is_isotropic else kernel.symbol(qx, qy)
     )
+    if not np.issubdtype(values.dtype, np.number):
+        return f"compliance is an array of {values.dtype}"
     bad = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
     if not bad.size:
         return ""
