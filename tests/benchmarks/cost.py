@@ -138,21 +138,12 @@ def peak() -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0
 
 
-def case_options(
-    description: str | None, points: list[int], tension: list[float]
-) -> argparse.ArgumentParser:
-    """Return a parser of the cases, grids and tensions of a table."""
-    parser = argparse.ArgumentParser(description=(description or "").partition("\n")[0])
-    parser.add_argument("--cases", nargs="+", default=["rough", "punch"])
-    parser.add_argument("--points", type=int, nargs="+", default=points)
-    parser.add_argument("--tension", type=float, nargs="+", default=tension)
-    return parser
-
-
 def main() -> None:
     """Measure every case in a process of its own and print the table."""
-    parser = case_options(__doc__, [256, 512, 1024], [0.0, 0.02, 1.0])
-    parser.set_defaults(cases=["rough", "punch", "smooth"])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--cases", nargs="+", default=["rough", "punch", "smooth"])
+    parser.add_argument("--points", type=int, nargs="+", default=[256, 512, 1024])
+    parser.add_argument("--tension", type=float, nargs="+", default=[0.0, 0.02, 1.0])
     parser.add_argument("--solvers", nargs="+", default=["active_set"])
     parser.add_argument("--cutoff", type=float, help="shortest wavelength over L, on every grid")
     parser.add_argument("--threads", type=int, nargs="+", default=[1])
