@@ -60,7 +60,6 @@ class Durations:
         self.seconds: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))
 
     def pytest_runtest_logstart(self) -> None:
-        """Begin to count: what came before is no test's."""
         self.before = _cpu_seconds()
 
     @pytest.hookimpl(wrapper=True)

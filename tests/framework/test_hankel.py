@@ -28,7 +28,6 @@ class SymbolOnly:
         self.compliance = compliance
 
     def symbol(self, qx: Array, qy: Array) -> Array:
-        """Return that of |q|."""
         return self.compliance(np.hypot(qx, qy))
 
 

@@ -140,7 +140,6 @@ class Refusing(io.StringIO):
         self.error = error
 
     def write(self, text: str) -> int:
-        """Fail."""
         raise self.error
 
 

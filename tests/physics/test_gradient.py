@@ -196,7 +196,6 @@ class Mine(pl.Isotropic):
     length: Annotated[float, Field(description="length beyond which they are coupled [m]")] = 3e-5
 
     def compliance(self, q: Array) -> Array:
-        """Return the softness over 1 + q l."""
         return self.softness / (1 + q * self.length)
 
 
@@ -296,7 +295,6 @@ def never() -> Any:
         type: Literal["never"] = "never"
 
         def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-            """Fail."""
             raise AssertionError("solved")
 
     return Never()

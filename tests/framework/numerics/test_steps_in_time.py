@@ -183,7 +183,6 @@ class Drained:
     is_isotropic = True
 
     def symbol(self, qx: Array, qy: Array) -> Array:
-        """Return it of q."""
         return KERNEL.symbol(qx, qy) * drained(np.hypot(qx, qy), self.length)
 
 

@@ -52,12 +52,10 @@ class Interrupting(pl.Output):
     after: ClassVar[int]
 
     def step(self, dataset: xr.Dataset, stem: Path) -> None:
-        """Raise KeyboardInterrupt if the step is the one."""
         if dataset["step"].item() == self.after:
             raise KeyboardInterrupt
 
     def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
-        """Write nothing."""
         return ()
 
 

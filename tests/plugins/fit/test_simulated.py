@@ -126,7 +126,6 @@ def test_a_stranger_s_kernel_needs_no_poissons_ratio(monkeypatch: pytest.MonkeyP
         tension: Annotated[float, Quantity("N/m", at_least=0)]
 
         def compliance(self, q: Array) -> Array:
-            """Return G(q) [m/Pa]."""
             softer = 2 / (self.reduced_modulus * q) * (1 + 1 / (1 + 1 / (1e-6 * q)))
             return np.asarray(1 / (1 / softer + self.tension * q**2))
 
@@ -276,11 +275,9 @@ def liar(change: Callable[..., Any]) -> Any:
         type: Literal["liar"] = "liar"  # type: ignore[assignment]
 
         def force_curve(self, depth: Any, length: float) -> Any:
-            """Return the force curve, changed."""
             return change(super().force_curve(depth, length), depth)
 
         def layer_force_curve(self, depth: Any, *solid: float) -> Any:
-            """Return the force curve on a layer, changed."""
             return change(super().layer_force_curve(depth, *solid), depth)
 
     return Bead(radius=1e-5)

@@ -140,19 +140,15 @@ class Stated(pl.Isotropic):
         return 1e-6 / (1 + 5e-4 * q)
 
     def mean_compliance(self) -> float:
-        """Return its limit for long waves."""
         return 1e-6
 
     def branches(self) -> tuple[Branch, ...]:
-        """Return one branch."""
         return (Branch(0.5, 2.0),)
 
     def time_span(self) -> tuple[float, float]:
-        """Return a span around its time."""
         return 0.1, 30.0
 
     def depth_to_base(self) -> float:
-        """Return 3 mm."""
         return 3e-3
 
 
@@ -164,7 +160,6 @@ class Warm(KernelOf):
     body: pl.Kernel
 
     def symbol(self, qx: Array, qy: Array) -> Array:
-        """Return twice that of the body."""
         return 2 * self.body.symbol(qx, qy)
 
 

@@ -310,7 +310,6 @@ class Failing(pl.Output):
     type: Literal["failing"] = "failing"
 
     def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
-        """Refuse."""
         raise pl.ConfigError("is not what it seemed", "type")
 
 

@@ -44,7 +44,6 @@ class Graded(Isotropic):
     type: Literal["graded"] = "graded"
 
     def compliance(self, q: Array) -> Array:
-        """Return q^−½."""
         return q**-0.5
 
 
