@@ -14,7 +14,7 @@ from scipy.special import beta
 import pellicle as pl
 from pellicle.arrays import Array
 from tests.docs.blocks import DOCS, ROOT
-from tests.tables_of_runs import layer
+from tests.tables_of_runs import layer, pressing
 
 TABLES = {table.name: table for table in reference_tables.TABLES}
 SLOW = {
@@ -290,12 +290,7 @@ def test_the_page_on_grids_says_how_much_too_large_a_counted_area_is() -> None:
         depth = row("tensed_paraboloid", s_over_a=s_over_a)["depth_over_Hertz"] * radius**2 / RADIUS
         excess = []
         for edge in np.linspace(2.3, 2.9, 24) * radius:
-            data = solved(
-                grid={"points": 48, "size": edge},
-                kernel=tensed(s_over_a, radius),
-                indenter=PARABOLOID,
-                loading={"depth": depth},
-            )
+            data = solved(**pressing(48, edge, tensed(s_over_a, radius), PARABOLOID, depth=depth))
             area = float(data["contact_area"][0])
             excess.append((area / (np.pi * radius**2) - 1) * radius / (edge / 48))
         # The area jumps by several cells, which scatters the mean by some 0.02.

@@ -12,7 +12,7 @@ from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.closed_forms.hertz import ellipse, sphere
 from pellicle_plugins.closed_forms.sneddon import cone
 from pellicle_plugins.indenters.of_revolution import Paraboloid
-from tests.tables_of_runs import half_space, heights, paraboloid, reference_rows, tensed
+from tests.tables_of_runs import half_space, heights, paraboloid, pressing, reference_rows, tensed
 from tests.tables_of_runs import step as solved
 
 
@@ -21,10 +21,7 @@ def _step(
 ) -> xr.Dataset:
     return solved(
         solver,
-        grid={"points": points, "size": size},
-        kernel=half_space(),
-        indenter=indenter,
-        loading=loading,
+        **pressing(points, size, half_space(), indenter, **loading),
         corrections=[{"type": "yastrebov"}],
     )
 
@@ -267,10 +264,7 @@ def test_force_is_second_order_and_area_first(s_over_a: float, solver: str) -> N
             step = solved(
                 solver,
                 1e-7,
-                grid={"points": points, "size": size},
-                kernel=tensed(1.0, tension),
-                indenter=paraboloid(),
-                loading={"depth": true.depth},
+                **pressing(points, size, tensed(1.0, tension), paraboloid(), depth=true.depth),
                 corrections=[{"type": "yastrebov"}],
             )
             squares += [
