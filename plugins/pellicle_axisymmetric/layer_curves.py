@@ -26,7 +26,7 @@ from pellicle.arrays import Array
 from pellicle.components import ForceCurve, LayerForceCurve
 
 from . import master_curves
-from .depth_curves import touching
+from .depth_curves import contact_part
 from .splines import Interpolant, stretched_spline, table_in
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ class Profile:
     def curve(self, depth: Array, layer: TensedLayer) -> LayerForceCurve:
         """Return P/E* and its derivatives at depths [m] of shape (n,), 0 without contact."""
         change, rates, last = _splines(self, layer)
-        touches, d = touching(depth)
+        touches, d = contact_part(depth)
         x, x_rate = self.stretched(d, layer.thickness)
         inside = np.minimum(x, last)
         slope = change(inside, 1)

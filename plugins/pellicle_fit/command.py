@@ -154,7 +154,7 @@ def fit(
 @pl.hookimpl
 def register_commands(register: pl.RegisterCommand) -> None:
     """Register the command."""
-    written = "pellicle_fit.stored:stored"
+    written = "pellicle_fit.stored:file_display"
     register(fit, file="pellicle_fit.config:FitConfig", written=written)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
 
-from .balance import DIFFERENCE, balanced
+from .balance import DIFFERENCE, balance_depths
 from .contact.contact import Contact, HasModulus
 from .contact.curve import Curve
 from .effect import (
@@ -164,7 +164,7 @@ class Explanation:
         if of.give is None:
             depth, force = of.base, of.pushed(of.base)
         else:
-            depth, force = balanced(of.pushed, of.give, of.base, of.near)
+            depth, force = balance_depths(of.pushed, of.give, of.base, of.near)
         rate = (of.pushed(depth + step) - force) / step
         if of.give is not None:
             way = of.give(force)

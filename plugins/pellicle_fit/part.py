@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from typing import Any, Protocol
 
-from pellicle.batch import Part, locked
+from pellicle.batch import Part, lock_files
 from pellicle.components import Say, Task
 from pellicle.errors import StorageError
 
@@ -60,7 +60,7 @@ def passes(
 
 def fit_alone(task: KeptTask, say: Say, *, work: Work, wait: bool) -> dict[str, Any]:
     """Return the kept fit of a curve, or fit and keep it while no other process does."""
-    with locked(task.path.parent, task.path.stem, wait=wait):
+    with lock_files(task.path.parent, task.path.stem, wait=wait):
         try:
             return read_sealed(task.path)
         except StorageError:

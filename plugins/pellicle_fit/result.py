@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from pellicle.arrays import Array
 
 from .config import FitConfig
-from .config_input import described
+from .config_input import describe_indenter
 from .estimation.candidate import Candidate
 from .estimation.coordinates import MODULUS
 from .estimation.intervals import CONFIDENCE, Estimate
@@ -19,7 +19,7 @@ from .selection.advice import Advice
 from .selection.recipe import TENSION, Answer
 from .words.advice import step
 from .words.names import in_words, words_of
-from .words.story import agreement, calibration, headline, remarks, told, verdict_in_words
+from .words.story import agreement, calibration, headline, remarks, story_lines, verdict_in_words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -71,7 +71,7 @@ class Fit(Record):
 
     def __repr__(self) -> str:
         """Return numbers, verdict and next step; the arrays of a curve would fill a screen."""
-        return "\n".join(told(self))
+        return "\n".join(story_lines(self))
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: a sentence, the estimates, and the curve with its fit."""
@@ -177,7 +177,7 @@ def _curve(
     slots = [slot for slot in answer.selected.objective.slots if slot.curve == i]
     return {
         "name": name,
-        "indenter": described(curve.indenter),
+        "indenter": describe_indenter(curve.indenter),
         "points": curve.position.size,
         "noise": {"value": checked.deviation, "unit": "N"},
         "noise_weighed": {"value": checked.noise.deviation, "unit": "N"},

@@ -27,7 +27,7 @@ from .result import Fit
 from .sealed import read_sealed
 
 
-def stored(file: Path) -> StoredFit | StoredFits:
+def file_display(file: Path) -> StoredFit | StoredFits:
     """Return what shows a file that ``pellicle fit`` wrote of one curve or of many."""
     with h5py.File(file) as content:
         attributes = dict(content.attrs)

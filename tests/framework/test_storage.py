@@ -181,7 +181,7 @@ def test_segments_that_are_joined_while_they_are_read(
     storage.write(steps(1, 2, 3), path)
     storage.append(steps(4), path)
     assert len(list(path.parent.iterdir())) == 2
-    plain, calls = storage.opened, []
+    plain, calls = storage.open_file, []
 
     def join_first(part: Path, *arguments: Any) -> object:
         calls.append(part)
@@ -223,7 +223,7 @@ def test_read_as_it_was(tmp_path: Path) -> None:
     """Values, kinds, names, units, coordinates and their order come back."""
     path = tmp_path / "sample.h5"
     path.write_bytes(
-        netcdf.serialised(sample(), grows=["step"], packed=["field", "inside"]).getvalue()
+        netcdf.serialise(sample(), grows=["step"], packed=["field", "inside"]).getvalue()
     )
     dataset = xr.load_dataset(path, engine="h5netcdf")
     xr.testing.assert_identical(dataset, sample())
@@ -236,7 +236,7 @@ def test_read_as_it_was(tmp_path: Path) -> None:
 def test_layout(tmp_path: Path) -> None:
     """Steps can grow, what is to be packed is, and a missing number is one for every reader."""
     path = tmp_path / "sample.h5"
-    path.write_bytes(netcdf.serialised(sample(), grows=["step"], packed=["field"]).getvalue())
+    path.write_bytes(netcdf.serialise(sample(), grows=["step"], packed=["field"]).getvalue())
     with h5py.File(path) as file:
         assert file["field"].maxshape == (None, 3, 4)
         assert file["missing"].maxshape == (None,)
@@ -249,7 +249,7 @@ def test_layout(tmp_path: Path) -> None:
 def test_reads_what_it_wrote(tmp_path: Path) -> None:
     """All of it, or what does not lie along a dimension."""
     path = tmp_path / "sample.h5"
-    path.write_bytes(netcdf.serialised(sample(), grows=["step"]).getvalue())
+    path.write_bytes(netcdf.serialise(sample(), grows=["step"]).getvalue())
     with h5py.File(path) as file:
         xr.testing.assert_identical(netcdf.dataset(file), sample())
         xr.testing.assert_identical(netcdf.dataset(file, without=["x"]), sample().drop_dims("x"))

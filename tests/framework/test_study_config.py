@@ -14,7 +14,7 @@ from jsonschema import Draft202012Validator
 import pellicle as pl
 from pellicle.config.study import Study
 from pellicle.results.derived import names
-from pellicle.schema import replaced
+from pellicle.schema import replace_at
 from pellicle.studies.table import StudyTable
 from tests.tables_of_runs import paraboloid, pressing, tensed
 
@@ -192,7 +192,7 @@ def test_a_run_is_no_study(tmp_path: Path) -> None:
 )
 def test_identity_changes_with_any_value(key: str, value: Any) -> None:
     """Whatever decides a number is in the identity."""
-    assert pl.Run(**replaced(RUN, key, value)).identity != pl.Run(**RUN).identity
+    assert pl.Run(**replace_at(RUN, key, value)).identity != pl.Run(**RUN).identity
 
 
 def test_identity_of_equal_runs() -> None:

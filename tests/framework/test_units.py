@@ -8,7 +8,7 @@ import numpy as np
 import pint
 import pytest
 
-from pellicle.units import Quantity, one
+from pellicle.units import Quantity, unit_quantity
 
 UREG: pint.UnitRegistry[float] = pint.UnitRegistry()
 TENSION = Quantity("N/m", at_least=0)
@@ -147,7 +147,7 @@ def test_unit_that_would_never_end(unit: str) -> None:
         Quantity("Pa")(f"1 {unit}")
     assert len(str(caught.value)) < 250
     with pytest.raises(ValueError, match="has an unknown unit"):
-        one(unit)
+        unit_quantity(unit)
 
 
 def test_powers() -> None:

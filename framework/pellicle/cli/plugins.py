@@ -9,7 +9,7 @@ import typer
 
 from pellicle.errors import ConfigError
 from pellicle.plugins.commands import commands, file_models, typer_command
-from pellicle.plugins.origins import Broken, Origin, claimed_by
+from pellicle.plugins.origins import BrokenPlugin, Origin, claimed_by
 
 from .printing import NOT_CONVERGED, echo, print_json, print_table
 
@@ -47,7 +47,7 @@ def plugins(
     ] + [
         ("command", name, of.distribution, of.version, (command.help or "").partition("\n")[0])
         for (name, (of, *_)), command in zip(owners.items(), loaded_commands.values(), strict=True)
-        if not isinstance(command, Broken)
+        if not isinstance(command, BrokenPlugin)
     ]
     clashes: dict[tuple[str, str], Sequence[Origin]] = {
         **contents.clashes,
@@ -56,7 +56,7 @@ def plugins(
     failed = {
         loaded.origin: loaded
         for name, loaded in (*file_models().items(), *loaded_commands.items())
-        if isinstance(loaded, Broken) and ("command", name) not in clashes
+        if isinstance(loaded, BrokenPlugin) and ("command", name) not in clashes
     }
     unusable = [
         (broken.origin.entry_point, [broken.origin], broken.error)

@@ -19,7 +19,7 @@ from pydantic_core import CoreSchema
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 from pellicle.plugins.component import Component
-from pellicle.schema.model import replaced, walk
+from pellicle.schema.model import replace_at, walk
 from pellicle.schema.ranges import is_path, path_of, path_schemas
 from pellicle.units import parts_of, quantity_of
 from pellicle.variables import VARIABLES, Variable, words_of_name
@@ -79,7 +79,7 @@ class Load(Component):
         """Return the load in a load step, counted from 0, each of its fields one value."""
         if self.varied is None:
             return self
-        return type(self)(**replaced(self, self.varied.name, self.varied.values[step]))
+        return type(self)(**replace_at(self, self.varied.name, self.varied.values[step]))
 
     @property
     def _paths(self) -> list[LoadPath]:

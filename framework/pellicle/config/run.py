@@ -35,7 +35,7 @@ from pellicle.components import (
 )
 from pellicle.components.installed import registry
 from pellicle.components.kernel import branches_of
-from pellicle.errors import ConfigError, all_problems, problems_within, shown
+from pellicle.errors import ConfigError, all_problems, excerpt, problems_within
 from pellicle.grid import Grid, grid_of_run
 from pellicle.plugins.component import words_of_type
 from pellicle.schema.from_file import FromFile
@@ -128,7 +128,7 @@ class Run(FromFile):
         if isinstance(value, Mapping):
             return Loading(**fields_from(value, interaction=pulls))
         if not isinstance(value, Loading):
-            raise ConfigError(f"{shown(value)} is not allowed; give a table (the load steps)")
+            raise ConfigError(f"{excerpt(value)} is not allowed; give a table (the load steps)")
         if not pulls:
             value.refuse_pulls()
         return value

@@ -12,7 +12,7 @@ from pellicle.arrays import Array, Cells, Mask
 from pellicle.grid import Boundary
 
 from .law import Law
-from .masks import dilated, labelled
+from .masks import dilate, label_parts
 
 # Weights of a cell, its two neighbours and the one across the corner at the middle of a quarter of
 # the cell, where the gap is interpolated bilinearly.
@@ -102,7 +102,7 @@ def attraction(
     """
     near: Mask = contact | (gap < law.cutoff())
     if law.needs_contact:
-        labels, number = labelled(near, boundary, 4)
+        labels, number = label_parts(near, boundary, 4)
         joined = np.zeros(number + 1, dtype=bool)
         joined[labels[contact]] = True
         joined[0] = False
@@ -112,9 +112,9 @@ def attraction(
         cells = np.flatnonzero(near & ~contact)[None]
         values = gap.ravel()[cells[0]]
         return Attraction(law, contact, contact, contact, cells, np.ones(1), values, 1.0)
-    closed = contact & ~dilated(~contact, boundary)
-    inner = closed & ~dilated(~closed, boundary)
-    acting = dilated(near, boundary) & np.isfinite(profile) & ~inner
+    closed = contact & ~dilate(~contact, boundary)
+    inner = closed & ~dilate(~closed, boundary)
+    acting = dilate(near, boundary) & np.isfinite(profile) & ~inner
     corners = np.concatenate(
         [_corners(acting, side, law, profile, boundary) for side in _QUARTERS], 1
     )

@@ -11,7 +11,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 
-from .caveats import Caveat, ranked
+from .caveats import Caveat, rank_caveats
 from .equilibrium import Deformation
 from .moved_front import moved_on
 from .problem import Adhesive, Depth, Unilateral
@@ -70,7 +70,7 @@ class LoadStep(Generic[Surface]):
             self,
             measures={**self.measures, **measures},
             fields={**self.fields, **(fields or {})},
-            caveats=ranked((*self.caveats, *caveats)),
+            caveats=rank_caveats((*self.caveats, *caveats)),
         )
 
 

@@ -54,7 +54,7 @@ class Origin:
 
 
 @dataclass(frozen=True)
-class Broken:
+class BrokenPlugin:
     """A plugin that cannot be used, and the error."""
 
     origin: Origin
@@ -80,7 +80,7 @@ def in_order(entries: Iterable[EntryPoint], disable: str) -> Iterator[tuple[Entr
         yield entry, is_off
 
 
-def isolated(entry: EntryPoint, load: Callable[[], Loaded]) -> Loaded | Broken:
+def call_isolated(entry: EntryPoint, load: Callable[[], Loaded]) -> Loaded | BrokenPlugin:
     """Return what a function that runs code of the plugin of an entry point returns, or the error.
 
     Parsers of arguments and checks of licences call sys.exit(). What the plugin prints goes to
@@ -91,7 +91,7 @@ def isolated(entry: EntryPoint, load: Callable[[], Loaded]) -> Loaded | Broken:
             return load()
     except (Exception, SystemExit) as error:
         kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
-        return Broken(Origin.of(entry), f"{kind}{error}".removesuffix(": "))
+        return BrokenPlugin(Origin.of(entry), f"{kind}{error}".removesuffix(": "))
 
 
 @cache

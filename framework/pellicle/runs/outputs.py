@@ -14,7 +14,7 @@ from pellicle.components import Output, Runs
 from pellicle.components.installed import registry
 from pellicle.config.file_names import stem_of
 from pellicle.config.run import Run
-from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.errors import ConfigError, PluginError, excerpt
 from pellicle.show.saving import write_charts
 
 from .journal import Journal
@@ -88,7 +88,7 @@ def files_of(output: Output, runs: Runs, stem: Path) -> tuple[Path, ...]:
     call = f"{component_name(output)}: write(runs, stem) returned"
     if not isinstance(files, (tuple, list)) or not all(isinstance(path, Path) for path in files):
         raise PluginError(
-            f"{call} {shown(files)}; it has to return a tuple of pathlib.Path, empty if there is "
+            f"{call} {excerpt(files)}; it has to return a tuple of pathlib.Path, empty if there is "
             "none"
         )
     for path in files:

@@ -105,7 +105,7 @@ class RunProgress(_Progress):
                 f"residual {message.residual_ratio:.1e} × tolerance",
             )
 
-        show = reporting(index, self._steps, update)
+        show = progress_monitor(index, self._steps, update)
 
         def monitor(iteration: int, residual_ratio: float) -> None:
             """Show or report an iteration."""
@@ -197,7 +197,7 @@ class BatchProgress(_Progress):
         return f"{self._done - self._failed} done, {self._failed} failed, {left} left"
 
 
-def reporting(index: int, steps: int, show: Callable[[ProgressMessage], None]) -> Monitor:
+def progress_monitor(index: int, steps: int, show: Callable[[ProgressMessage], None]) -> Monitor:
     """Return a monitor of a load step that passes its progress on, at most ten times a second."""
     highest, shown_at = 1.0, 0.0
 

@@ -167,7 +167,7 @@ def origin(attributes: Mapping[str, Any], configuration: Mapping[str, Any]) -> l
     ]
 
 
-def planned(tasks: Sequence[RunTask]) -> tuple[Table, str]:
+def plan_table(tasks: Sequence[RunTask]) -> tuple[Table, str]:
     """Return a row for each run, finished or not, and a sentence on all."""
     rows, done = [], 0
     for task in tasks:

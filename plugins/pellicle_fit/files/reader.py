@@ -17,7 +17,7 @@ from pellicle.components import Component
 from pellicle.errors import PluginError, StorageError
 
 from .columns import Calibration as Calibration
-from .columns import Column, from_columns, lacking, recalibrated
+from .columns import Column, from_columns, missing_parts, recalibrate
 from .measurement import CurvesByLabel as CurvesByLabel
 from .measurement import Measurement as Measurement
 from .measurement import Site as Site
@@ -96,10 +96,10 @@ def curve_of(
         sensitivity=calibration.sensitivity or sensitivity,
         speed=calibration.speed,
     )
-    if lacks := lacking(made, own):
+    if lacks := missing_parts(made, own):
         raise MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in lacks})
     curve = replace(from_columns(made, own), site=site, pause=pause, messages=messages)
-    return recalibrated(curve, calibration, is_own=True)
+    return recalibrate(curve, calibration, is_own=True)
 
 
 def sections_of(
@@ -119,7 +119,7 @@ def sections_of(
     return length, [*zip(parts[1::2], parts[2::2], strict=True)]
 
 
-def refused(path: Path, kind: str, error: Exception) -> StorageError:
+def unreadable_error(path: Path, kind: str, error: Exception) -> StorageError:
     """Return the error of a file that cannot be read as ``kind``, with the reason in words."""
     reason = getattr(error, "strerror", "") or " ".join(map(str, error.args))
     lacks = "it has no " if isinstance(error, KeyError) else ""

@@ -59,7 +59,7 @@ class _Harmonics(NamedTuple):
     """Its velocity over the first and over the last cycle [m/s], of shape (2,)."""
 
 
-class Separated(NamedTuple):
+class SineSeparation(NamedTuple):
     """A curve without its sines, and these."""
 
     position: Array
@@ -79,7 +79,7 @@ def separate(
     stiffness: float | None,
     frequencies: Sequence[float],
     lag: float,
-) -> Separated:
+) -> SineSeparation:
     """Return a curve without its sines of some frequencies [Hz], and these beside it.
 
     The rows are in order of time.  The force may be read a ``lag`` [s] after the position.  What is
@@ -133,7 +133,7 @@ def separate(
     )
     # The base has no noise, so it is what is shifted.
     load, way = slow[1, left], np.interp(time - lag, time, slow[0])[left]
-    return Separated(way - softness * load, load, left, tuple(sines), notes)
+    return SineSeparation(way - softness * load, load, left, tuple(sines), notes)
 
 
 def _steady(

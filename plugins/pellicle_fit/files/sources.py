@@ -113,7 +113,7 @@ def _listed(
         files = [(name, {}, name) for name in curves]
     else:
         paths = [curves] if isinstance(curves, (str, Path)) else curves
-        expanded_paths = [path for text in paths for path in expanded(text)]
+        expanded_paths = [path for text in paths for path in expand_pattern(text)]
         files = [file for path in expanded_paths for file in _files(path, mapped)]
     if not files:
         raise ConfigError("holds no curve; give files, or a folder of them", "curves")
@@ -128,7 +128,7 @@ def _listed(
         yield file, {name: values[number] for name, values in per_file.items()} | listed, table
 
 
-def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
+def expand_pattern(pattern: str | Path, folder: str | Path = "") -> list[Path]:
     """Return the files that match a pattern such as ``"beads/*.csv"``; any other path as it is."""
     path = Path(folder, pattern)
     if exists(path) or not has_magic(str(pattern)):
@@ -160,7 +160,7 @@ def _files(path: Path, mapped: Mapping[str, str]) -> list[tuple[Path, dict[str, 
     return [
         (file, fields, path)
         for name, fields in listed
-        for one in expanded(name, path.parent)
+        for one in expand_pattern(name, path.parent)
         for file in (_in_folder(one) if is_folder(one) else [one])
     ]
 

@@ -23,8 +23,8 @@ from pellicle_fit.files.reader import (
     Calibration,
     Reader,
     curve_of,
-    refused,
     sections_of,
+    unreadable_error,
 )
 
 _MARK, _END = rb"\*Force file list", rb"\*File list end"
@@ -85,7 +85,7 @@ def _curve(path: Path, calibration: Calibration) -> Measurement:
         times = [ramp / float(known[f"{way} vel."]) for way in ("Forward", "Reverse")]
         stiffness = float(_either(bend, "Spring Constant", "Spring constant"))
     except (OSError, ValueError, LookupError, OverflowError) as error:
-        raise refused(path, "a force curve of NanoScope", error) from None
+        raise unreadable_error(path, "a force curve of NanoScope", error) from None
     spans = [np.arange(v.size) / v.size * time for v, time in zip(rows, times, strict=True)]
     volts = np.append(rows[0][::-1], rows[1]) * slope
     exists = ~np.isin(np.append(rows[0][::-1], rows[1]), _MISSING)

@@ -21,8 +21,8 @@ from pellicle_fit.files.reader import (
     Calibration,
     Reader,
     curve_of,
-    refused,
     sections_of,
+    unreadable_error,
 )
 
 _END = b"\r\n#!"
@@ -78,7 +78,7 @@ class Nanosurf(Reader, title="Nanosurf"):
             if done < 1:
                 raise ValueError("no finished curve")
         except (OSError, ValueError, LookupError, OverflowError) as error:
-            raise refused(path, "a spectrum of Nanosurf", error) from None
+            raise unreadable_error(path, "a spectrum of Nanosurf", error) from None
         read = partial(_curve, path, sections, channels, calibration)
         return {str(n) if done > 1 else "": partial(read, n) for n in range(done)}
 
@@ -140,7 +140,7 @@ def _curve(
         is_measured = all(_SENSOR in channels[frame] for frame in _FRAMES if frame in channels)
         stiffness = _number(sections.get(r"DataSet\Calibration\Cantilever", {}), "Prop0")
     except (OSError, ValueError, LookupError, OverflowError) as error:
-        raise refused(path, "a spectrum of Nanosurf", error) from None
+        raise unreadable_error(path, "a spectrum of Nanosurf", error) from None
     role = "force" if unit == "N" else "deflection"
     columns = {
         "extension": (np.concatenate(place), "m"),

@@ -21,7 +21,7 @@ from pellicle_fit.result import Fit
 from pellicle_fit.selection.recipe import TENSION
 from pellicle_fit.words.names import words_of
 
-from .contact_sheet import PAGE, chosen, sheets
+from .contact_sheet import PAGE, choose_curves, sheets
 from .course import chart_over_time, has_hold
 from .likelihood_map import likelihood_map
 from .moduli import chart_of_sines
@@ -58,7 +58,7 @@ def panels(fit: Fit | ManyFits) -> dict[str, Drawing]:
         caption = f"{title}: grey where there is no accepted fit or no value, hatched where one "
         caption += "end of the interval is open."
         found[caption] = map_figure(images, title)
-    rows, words = chosen(fit.rows, _PAGES)
+    rows, words = choose_curves(fit.rows, _PAGES)
     which, pages = (
         "Some curves with their fits" if words else "Each curve with its fit",
         sheets(rows),

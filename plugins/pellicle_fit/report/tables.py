@@ -14,7 +14,7 @@ from pellicle_fit.population.fits import QUARTILES, summary
 from pellicle_fit.population.row import FITTED, SHOWN, Row
 from pellicle_fit.record import OVER_TIED, Record
 from pellicle_fit.selection.recipe import TENSION
-from pellicle_fit.words.names import FEW, interval, quoted, unit_of, unit_of_one, words
+from pellicle_fit.words.names import FEW, interval, quote_estimate, unit_of, unit_of_one, words
 
 _OPEN = {*End} - {End.CLOSED, End.NOT_SOUGHT}
 """What an end is that needs a reason."""
@@ -228,7 +228,7 @@ def _quantity(
     """Return the column of a quantity, with intervals that were ``sought``; none if all lack it."""
     of = [None if e is None or (e.held and not e.value) else e for e in of]
     texts = [
-        (quoted(e, unit, digits) if wanted else unit.number(e.value, digits)) if e else ""
+        (quote_estimate(e, unit, digits) if wanted else unit.number(e.value, digits)) if e else ""
         for e, wanted in zip(of, sought or [True] * len(of), strict=True)
     ]
     head = f"{words(name)} [{unit.unit}]"

@@ -12,7 +12,7 @@ from pellicle_fit.estimation.candidate import Candidate
 from pellicle_fit.estimation.coordinates import CONTACT_POINT
 from pellicle_fit.estimation.noise import FEWEST, Flaw
 
-from .forecast import telling
+from .forecast import telling_measurement
 from .recipe import DRAINING, Answer
 from .verdict import Verdict
 
@@ -120,6 +120,6 @@ def _of_options(
 
 def _measurement(target: Candidate, others: Sequence[Candidate]) -> Advice | None:
     """Return what to measure, so that explanations can be told apart; None if nothing would do."""
-    proposal, curves = telling(target, others)
+    proposal, curves = telling_measurement(target, others)
     known = {"proposal": proposal, "curves": curves}
     return Advice(Remedy.MEASURE, known) if proposal else None

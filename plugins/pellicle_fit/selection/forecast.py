@@ -51,7 +51,9 @@ class Proposal(NamedTuple):
     """Time of a dwell [s], speed [m/s], largest depth or radius [m]."""
 
 
-def telling(target: Candidate, others: Sequence[Candidate]) -> tuple[Proposal | None, int]:
+def telling_measurement(
+    target: Candidate, others: Sequence[Candidate]
+) -> tuple[Proposal | None, int]:
     """Return the measurement that tells an explanation from others that are as good now, if any.
 
     Beside it stands how many curves of this kind it takes.

@@ -192,7 +192,7 @@ def agreement_of(fit: Candidate) -> Agreement:
     return Agreement(max(sum(rises), 0.0), shared * (count - 1), int(np.argmax(rises)))
 
 
-def timed(curves: Sequence[Curve]) -> tuple[Curve, ...]:
+def with_times(curves: Sequence[Curve]) -> tuple[Curve, ...]:
     """Return curves with times.
 
     Those whose times are not known have one speed, at which the longest takes 1 s.
@@ -234,7 +234,7 @@ def answer(
     sets = tuple(map(tuple, rivals))
     for effect in (*model, *common, *chain(*sets), *uncertainty):
         refuse_broken(effect)
-    curves = timed(curves)
+    curves = with_times(curves)
     target = next((effect for effect in model if not isinstance(effect, Records)), None)
     common = (*common, *(effect for effect in model if effect is not target))
     question = Question(Solid.model_validate(dict(fix or {})), target, common, sets)

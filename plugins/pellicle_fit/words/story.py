@@ -21,7 +21,7 @@ from pellicle_fit.record import Record
 from pellicle_fit.selection.recipe import Answer
 from pellicle_fit.selection.verdict import Verdict
 
-from .names import in_figures, in_words, listed, words, words_of, words_of_types
+from .names import in_figures, in_words, join_names, words, words_of, words_of_types
 
 _WIDTH = 100
 _WRAPPED: dict[str, Any] = {"subsequent_indent": "    ", "break_on_hyphens": False}
@@ -34,7 +34,7 @@ NOT_WEIGHED = (
 )
 
 
-def told(fit: Record, *, si: bool = False) -> list[str]:
+def story_lines(fit: Record, *, si: bool = False) -> list[str]:
     """Return the lines of its story for a terminal; a long one goes on, indented, after a ";"."""
     lines = list[str]()
     for line in story(fit, si=si):
@@ -82,7 +82,7 @@ def calibration(uncertainty: Mapping[Any, float]) -> str:
 
 def shares(uncertainty: Mapping[Any, float]) -> str:
     """Return an uncertainty in words."""
-    return listed([f"{words(name)} to {100 * x:.3g} %" for name, x in uncertainty.items()])
+    return join_names([f"{words(name)} to {100 * x:.3g} %" for name, x in uncertainty.items()])
 
 
 def verdict_in_words(answer: Answer) -> str:
@@ -133,7 +133,7 @@ def _reason(answer: Answer) -> str:
     question = answer.question
     if answer.verdict is Verdict.UNDESCRIBED:
         flaws = {flaw for check in answer.judgements if not check.describes for flaw in check.flaws}
-        untried = listed([words_of_types(question, types) for types in answer.untried])
+        untried = join_names([words_of_types(question, types) for types in answer.untried])
         why = next(flaw.value for flaw in Flaw if flaw in flaws)
         return f"{why}; {untried} could not be tried" if untried else why
     fits = {fit.types: fit for fit in answer.explanations}
@@ -147,7 +147,7 @@ def _reason(answer: Answer) -> str:
 def _named(fits: Sequence[Candidate]) -> str:
     """Return explanations in words, but for those that only add to another of them."""
     simplest = [fit for fit in fits if not any(rival.types < fit.types for rival in fits)]
-    return listed([*map(words_of, simplest)], "or", _RIVALS)
+    return join_names([*map(words_of, simplest)], "or", _RIVALS)
 
 
 def agreement(answer: Answer, names: Sequence[str]) -> str:
@@ -192,5 +192,5 @@ def remarks(answer: Answer) -> Iterator[str]:
         if not (question.of_target and question.of_target <= types):
             reasons.setdefault(reason, []).append(words_of_types(question, types))
     if reasons:
-        parts = (f"{listed(names)} ({reason})" for reason, names in reasons.items())
+        parts = (f"{join_names(names)} ({reason})" for reason, names in reasons.items())
         yield Note(f"not compared: {'; '.join(parts)}")

@@ -12,7 +12,7 @@ from pellicle.components import FromRegistry, Isotropic, Kernel, KernelOf
 from pellicle.units import BendingStiffness, Tension
 
 from .elastic_constants import ElasticConstants, ElasticModulus
-from .tensions import TENSION, Stretched, Tensions
+from .tensions import TENSION, SkinTensions, Tensions
 
 _BENDING: Final[Any] = {
     "title": "bending stiffness",
@@ -88,7 +88,7 @@ class GurtinMurdoch(Skin, ElasticConstants, Isotropic):
         return 1 / (self.contact_modulus * q / 2 * hindered + self.skin_stiffness(q))
 
 
-class Coated(Stretched, KernelOf):
+class Coated(SkinTensions, KernelOf):
     """Skin with tension and bending stiffness on any other kernel.
 
     The stiffnesses of substrate and skin add at each wave. This is exact if the skin transmits

@@ -49,7 +49,7 @@ Reference = Annotated[
 ]
 
 
-class Chosen(dict[str, Any]):
+class Selection(dict[str, Any]):
     """Values of axes by name; of equal ones, as of equal outputs, the hashes are equal."""
 
     def __hash__(self) -> int:  # type: ignore[override]
@@ -72,8 +72,8 @@ class TableFigure(Output):
         (),
         description="axis of the study, or step, or several: each value has its own curve or panel",
     )
-    where: Annotated[dict[str, Any], AfterValidator(Chosen)] = Field(
-        default_factory=Chosen,
+    where: Annotated[dict[str, Any], AfterValidator(Selection)] = Field(
+        default_factory=Selection,
         description="values of other axes of the study for which it is drawn, such as "
         '{ "kernel.tension" = "10 mN/m" }',
     )

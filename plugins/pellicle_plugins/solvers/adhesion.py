@@ -11,9 +11,9 @@ from pellicle.arrays import Array, Mask
 from pellicle.contact import Adhesive, Law, Problem, State, Stop, first_guess
 
 from .adhesive_round import Round
-from .anderson import Tried, extrapolated, is_convex
+from .anderson import RoundRecord, extrapolate_rounds, is_convex
 from .contact_cg import SIGN_CERTAINTY, inner_solve
-from .nested_grids import prolonged
+from .nested_grids import coarse_start
 from .preconditioner import OnContact, Preconditioner
 from .scaling import ScaledSolver
 
@@ -89,7 +89,7 @@ class AdhesionSolver(ScaledSolver):
         # Without the law, a depth closes cells only beyond the first touch.
         lowest = float(problem.profile.max())
         closes = problem.prescribed == "force" or problem.value > -lowest
-        coarse = prolonged(self, problem) if closes else None
+        coarse = coarse_start(self, problem) if closes else None
         if coarse:
             pressure, contact = coarse.pressure, coarse.wall > 0
         else:
@@ -107,7 +107,9 @@ class AdhesionSolver(ScaledSolver):
 
     def step(self, problem: Problem, state: Round) -> Round:
         """Return the next round."""
-        traction, missed, wall = extrapolated([*state.on_this_contact, state.tried], state.contact)
+        traction, missed, wall = extrapolate_rounds(
+            [*state.on_this_contact, state.tried], state.contact
+        )
         following, contact = traction + missed, state.contact
         on_contact, changes = state.on_contact, _CHANGES
         # On springs a front has no stiffness, and a shift would leave the minimum of each cell.
@@ -207,7 +209,7 @@ def _finished(
     state = Round(problem, on_contact, wall, traction, displacement, gap, depth, acting, settled)
     if before is None:
         return state
-    history: tuple[tuple[Mask, Tried], ...] = ()
+    history: tuple[tuple[Mask, RoundRecord], ...] = ()
     # A cell that just touches may leave the contact and return, where earlier rounds are of use.
     is_other = not np.array_equal(contact, before.contact)
     if settled and before.settled and (is_other or is_convex(before.tried, state.tried, contact)):

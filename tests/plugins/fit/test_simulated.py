@@ -21,7 +21,7 @@ from pellicle_fit.problem import problem
 from pellicle_fit.selection.recipe import answer
 from pellicle_fit.simulated import simulation
 from pellicle_fit.simulated.equivalent import EquivalentBody
-from pellicle_fit.simulated.interpolated import SimulatedCurve, tensed
+from pellicle_fit.simulated.interpolated import SimulatedCurve, tensed_depths
 from pellicle_fit.simulated.simulation import plan, simulated_curve
 from pellicle_fit.simulated.solid import solid
 from pellicle_plugins.indenters.of_revolution import Sphere
@@ -47,7 +47,9 @@ def exact_nodes() -> SimulatedCurve:
     forces = np.array(
         [
             [sphere.force_curve(np.array([depth]), s).force[0] for s in lengths]
-            for depth, lengths in zip(tensed(depths), SimulatedCurve(body).nodes[0], strict=True)
+            for depth, lengths in zip(
+                tensed_depths(depths), SimulatedCurve(body).nodes[0], strict=True
+            )
         ]
     )
     return SimulatedCurve(body, forces, 0.01, half_space=False)

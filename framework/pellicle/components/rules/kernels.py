@@ -10,7 +10,7 @@ from pellicle.arrays import Array
 from pellicle.checks import read_only
 from pellicle.components.kernel import Kernel, branches_of
 from pellicle.contact.time_step import relax_alike
-from pellicle.errors import shown
+from pellicle.errors import excerpt
 from pellicle.grid import Grid
 from pellicle.surface.from_kernel import (
     checked_call,
@@ -143,7 +143,9 @@ def branches_have_shares_and_times(kernel: Kernel, case: Case) -> str:
             times = np.asarray(branch.time_at(read_only(q.copy())))
         wrong = times.shape not in ((), q.shape) or not (np.isfinite(times) & (times > 0)).all()
         if wrong:
-            return f"the time of a branch is {shown(times.tolist())} s at q = {shown(q.tolist())}"
+            return (
+                f"the time of a branch is {excerpt(times.tolist())} s at q = {excerpt(q.tolist())}"
+            )
     return ""
 
 

@@ -15,7 +15,7 @@ from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import AdhesiveEquilibrium, equilibrium_of
 from pellicle.contact.load_step import Value, control_of
-from pellicle.contact.masks import labelled
+from pellicle.contact.masks import label_parts
 from pellicle.contact.problem import Depth
 from pellicle.contact.solution import State, Stop
 
@@ -151,7 +151,7 @@ def _asperity_jumped(before: State | None, equilibrium: AdhesiveEquilibrium) -> 
         return False
     patches = before.pressure != 0, equilibrium.pressure != 0
     for mask, counterpart in (patches, patches[::-1]):
-        labels, number = labelled(mask, problem.grid.boundary, 4)
+        labels, number = label_parts(mask, problem.grid.boundary, 4)
         if np.unique(labels[mask & counterpart]).size < number:
             return True
     return False

@@ -12,7 +12,7 @@ from pellicle.arrays import Mask
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import AdhesiveEquilibrium, Equilibrium
-from pellicle.contact.masks import labelled
+from pellicle.contact.masks import label_parts
 from pellicle.grid import Boundary
 
 from . import SMALL_SLOPE, AroundContact, ContactStep
@@ -84,7 +84,7 @@ def _has_no_end(reach: Mask, boundary: Boundary) -> bool:
                 return True
         elif reach.shape[axis] > 1 and reach.any(axis=1 - axis).all():
             twice = np.concatenate([reach, reach], axis)
-            if labelled(twice, boundary, 8)[1] < 2 * labelled(reach, boundary, 8)[1]:
+            if label_parts(twice, boundary, 8)[1] < 2 * label_parts(reach, boundary, 8)[1]:
                 return True
     return False
 

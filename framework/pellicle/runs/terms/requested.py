@@ -37,12 +37,12 @@ def prescription(run: Run, step: ContactStep, surroundings: AroundContact) -> Co
 
 def stiffness(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
     """Add the contact stiffness [N/m], δ being the depth of the indenter."""
-    step = responding(run, step, surroundings)
+    step = add_response(run, step, surroundings)
     assert step.response
     return step.having({"stiffness": step.response[1]})
 
 
-def responding(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
+def add_response(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
     """Return the step with its response to a change of δ, and a caveat if that is not known."""
     if step.response:
         return step

@@ -23,7 +23,7 @@ _MARGIN: Final = 48
 _RIM: Final = 2
 
 
-def relaxed(
+def relax_locally(
     problem: Problem, on_contact: OnContact, solution: InnerSolution, margin: float
 ) -> tuple[Mask, Array]:
     """Return the contact and the forces [Pa] after local relaxation of an inner solution.
