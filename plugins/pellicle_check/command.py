@@ -26,7 +26,7 @@ def check(
 ) -> None:
     """Check a run or a study, and estimate its errors and memory from coarser grids."""
     from pellicle import Study
-    from pellicle.studies import from_toml, warn_of_scale
+    from pellicle.studies import from_toml, plan_runs, warn_of_scale
     from pellicle_check import words
     from pellicle_check.advice import advise
 
