@@ -49,8 +49,8 @@ def weights(
     """Return the weights of ∫ y(ψ) kernel(|t − x|, t, x) dψ over one panel, shape (m, order).
 
     They are those of y at the Gauss points of the panel, for targets x of shape (m,). The kernel is
-    smooth except at t = x, where ``power`` is that of the substitution, see ``clustered``. With
-    ``above`` the integral is over t > x only.
+    smooth except at t = x, where ``power`` is that of the substitution, see ``end_point_rule``.
+    With ``above`` the integral is over t > x only.
     """
     order = panel.nodes.psi.size
     rule = gauss(order)

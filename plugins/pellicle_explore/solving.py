@@ -33,7 +33,7 @@ class Frame(NamedTuple):
     """The load steps, of dimensions (step, x, y)."""
     largest: xr.Dataset
     """The load step with the largest force, of dimensions (x, y)."""
-    cut: xr.Dataset
+    section: xr.Dataset
     """A cut through its deepest point, along x."""
     line: xr.Dataset
     """The pressure along the cut, up to the rim of contact."""

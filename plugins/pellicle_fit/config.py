@@ -37,7 +37,7 @@ from .config_input import (
     component_table,
     config_of_record,
     describe_indenter,
-    effects_or_none,
+    effect_list,
     fields_of,
     indenter_or_table,
     list_or_entry,
@@ -109,7 +109,7 @@ class FitConfig(FromFile, Calibration):
         description="modulus and tension of an indenter that yields too: youngs_modulus, or "
         "reduced_modulus, poissons_ratio if it is not that of the solid, tension",
     )
-    model: Annotated[tuple[_OneEffect, ...], effects_or_none(_Effects)] = Field(
+    model: Annotated[tuple[_OneEffect, ...], effect_list(_Effects)] = Field(
         ("tension",),
         description="effects that the force has; whether the first is needed is the question. "
         "Without any, whether a curve shows more than an elastic half-space",
@@ -117,7 +117,7 @@ class FitConfig(FromFile, Calibration):
     )
     rivals: Annotated[
         tuple[Annotated[tuple[_OneEffect, ...], BeforeValidator(as_list)], ...],
-        effects_or_none(list[str | dict[str, Any] | _Effects]),
+        effect_list(list[str | dict[str, Any] | _Effects]),
     ] = Field(
         DEFAULT_RIVALS,
         description="effects, or lists of effects that act together, that are compared with "

@@ -31,7 +31,7 @@ def list_or_entry(entries: Any) -> BeforeValidator:
     return BeforeValidator(as_list, json_schema_input_type=entries)
 
 
-def effects_or_none(entries: Any) -> BeforeValidator:
+def effect_list(entries: Any) -> BeforeValidator:
     """Return the annotation of a list of effects, of which "none" is the empty one."""
     return BeforeValidator(
         lambda value: [] if isinstance(value, str) and value == "none" else as_list(value),

@@ -104,7 +104,7 @@ class Explanation:
                     return excuse
                 if isinstance(effect, Bends):
                     contact = effect.known(sizes).contact(contact)
-            if curve.sines and "tension" in names and not contact.is_own:
+            if curve.sines and "tension" in names and not contact.is_bare:
                 return "what a sine tells under a tension is known of a bare half-space alone"
         return ""
 
@@ -218,7 +218,7 @@ class Explanation:
         is_free = curve.stiffness is None and not yields
         balances = is_free or any(effect.balances for effect in responds)
         # The way that the measured forces leave.
-        path = base if balances else base - give(curve.smoothed - self.free_force(curve))
+        path = base if balances else base - give(curve.smooth_force - self.free_force(curve))
         response: Response = contact.force
         for effect in responds:
             response = effect.response(contact, curve, path, softness)

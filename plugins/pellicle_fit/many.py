@@ -146,7 +146,7 @@ def _task(
     try:
         indenter = config.indenter_of(source)
     except ConfigError as error:
-        raise source.named(error) from None
+        raise source.with_name(error) from None
     curve = source.curve
     try:
         if isinstance(curve, PellicleError):
@@ -208,7 +208,7 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve in a worker, and return JSON data of the fit, with what a population adds."""
     fit = task.problem.fit(like=task.like)
     selected, (force,) = fit.answer.selected, fit.forces()
-    (curve,) = selected.whole
+    (curve,) = selected.all_rows
     load = force - selected.known[0].free_force(curve)
     measured, position = curve.force, curve.position
     scatter = measured - np.mean(measured)

@@ -87,7 +87,7 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
         except ConfigError as error:
             if len(sources) == 1 or isinstance(error, MissingInputError):
                 raise
-            raise source.named(error, "; leave it out") from None
+            raise source.with_name(error, "; leave it out") from None
     depths = {curve.is_depth for curve in measured}
     if len(depths) > 1:
         raise ConfigError("some are of depths and some of positions; fit them apart", "curves")

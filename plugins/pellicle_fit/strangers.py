@@ -17,7 +17,7 @@ from .effect import Effect
 @lru_cache(maxsize=64)
 def refuse_broken(effect: Effect) -> None:
     """Ask a stranger's effect the rules of the kit that balance no forces."""
-    if is_own(type(effect)):
+    if is_built_in(type(effect)):
         return
     # The kit takes a second to import.
     from pellicle.testing import keep
@@ -31,14 +31,14 @@ def refuse_broken(effect: Effect) -> None:
         raise PluginError(f"effect {effect.type_name!r}: {broken}") from None
 
 
-def is_own(effect: type[Effect]) -> bool:
+def is_built_in(effect: type[Effect]) -> bool:
     """Return whether pellicle ships an effect."""
     installed = registry().components[Effect.family].values()
-    return effect in {entry.component for entry in installed if entry.origin.is_own}
+    return effect in {entry.component for entry in installed if entry.origin.is_built_in}
 
 
 @contextmanager
-def strangers_named() -> Iterator[None]:
+def name_strangers() -> Iterator[None]:
     """Add a note that names the stranger's component and its line to exceptions."""
     try:
         yield
@@ -50,6 +50,6 @@ def strangers_named() -> Iterator[None]:
         for family, components in registry().components.items():
             for type_, entry in components.items():
                 file = getsourcefile(entry.component)
-                if file in lines and not entry.origin.is_own:
+                if file in lines and not entry.origin.is_built_in:
                     error.add_note(f"{family} {type_!r} failed ({file}, line {lines[file]})")
         raise

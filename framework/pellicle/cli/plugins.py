@@ -91,7 +91,7 @@ def _check(name: str | None, json: bool) -> None:
         for type_, registered in members.items():
             origin = registered.origin
             names = {family, type_, f"{family}.{type_}", origin.distribution}
-            if name in names or (name is None and not origin.is_own):
+            if name in names or (name is None and not origin.is_built_in):
                 holds, verdict = verdict_on_examples(registered)
                 all_hold = all_hold and holds
                 rows.append((family, type_, origin.distribution, verdict))

@@ -59,7 +59,7 @@ def commands() -> Mapping[str, Sequence[EntryPoint]]:
             claims.setdefault(name, []).append(entry)
     for entries in claims.values():
         if len(entries) > 1:
-            entries.sort(key=lambda entry: not Origin.of(entry).is_own)
+            entries.sort(key=lambda entry: not Origin.of(entry).is_built_in)
     return claims
 
 
@@ -70,7 +70,7 @@ def load_command(name: str) -> Command | BrokenPlugin:
     Of several plugins that claim it none is used, and beside pellicle itself none either.
     """
     first, *others = commands()[name]
-    if others and not Origin.of(first).is_own:
+    if others and not Origin.of(first).is_built_in:
         claim = claimed_by(map(Origin.of, (first, *others)))
         return BrokenPlugin(Origin.of(first), f"{claim}; {REMEDY}")
     return call_isolated(first, partial(_loaded, first))
@@ -118,7 +118,7 @@ def errors_attributed_to(name: str) -> Iterator[None]:
     except (PellicleError, typer.Exit, typer.Abort):
         raise
     except Exception as error:
-        if not (origin := Origin.of(commands()[name][0])).is_own:
+        if not (origin := Origin.of(commands()[name][0])).is_built_in:
             error.add_note(f"command {name!r} of {origin} failed")
         raise
 

@@ -45,7 +45,7 @@ class Origin:
         return cls(entry.name, *_name_and_version(entry.dist))
 
     @property
-    def is_own(self) -> bool:
+    def is_built_in(self) -> bool:
         """Whether it is a part of pellicle."""
         return self.distribution == "pellicle"
 
@@ -74,7 +74,7 @@ def in_order(entries: Iterable[EntryPoint], disable: str) -> Iterator[tuple[Entr
     named = {_same(name) for name in disable.split(",")} - {""}
     for entry in sorted(set(entries), key=lambda entry: (entry.name, entry.value)):
         is_off = False
-        if named and not (origin := Origin.of(entry)).is_own:
+        if named and not (origin := Origin.of(entry)).is_built_in:
             names = _same(origin.distribution), _same(origin.entry_point)
             is_off = not named.isdisjoint({"1", "true", "all", *names})
         yield entry, is_off

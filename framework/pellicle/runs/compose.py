@@ -87,7 +87,7 @@ def _operator(run: Run) -> Operator:
 def _is_own(kind: type[Component]) -> bool:
     """Return whether a class is one that the distribution of pellicle registers."""
     installed = registry().components[kind.family].values()
-    return any(entry.component is kind and entry.origin.is_own for entry in installed)
+    return any(entry.component is kind and entry.origin.is_built_in for entry in installed)
 
 
 # Whether a rule holds depends on the values of a component and on the grid.

@@ -34,7 +34,7 @@ def hand_over(
             output.step(read_only_dataset(step), stem_of(output, journal.stem))
 
     calls = [partial(give, output) for output in outputs]
-    all_done([partial(journal.append, step), *calls] if is_new else calls)
+    call_all([partial(journal.append, step), *calls] if is_new else calls)
 
 
 def writers(
@@ -56,7 +56,7 @@ def writers(
     return [partial(write, output) for output in outputs]
 
 
-def all_done(calls: Iterable[Callable[[], Value]]) -> list[Value]:
+def call_all(calls: Iterable[Callable[[], Value]]) -> list[Value]:
     """Call all functions, even if one raises; return the values, or raise the first exception."""
     values: list[Value] = []
     errors: list[Exception] = []

@@ -30,7 +30,7 @@ from .compose import compose, compose_load
 from .journal import Journal
 from .lock import lock_files
 from .memory_estimate import memory_of
-from .outputs import all_done, hand_over, standard_outputs, writers
+from .outputs import call_all, hand_over, standard_outputs, writers
 from .progress import Bar, Report, RunProgress
 from .solve import solve_steps
 
@@ -167,7 +167,7 @@ def execute(
                 result = Result(with_events(steps.joined()))
                 if journal:
                     calls = [journal.close, *writers(outputs, runs, journal.stem, run)]
-                    files = tuple(chain(*all_done(calls)))
+                    files = tuple(chain(*call_all(calls)))
     return RunOutcome(result, files, resumed)
 
 

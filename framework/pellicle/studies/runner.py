@@ -39,7 +39,7 @@ from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.lock import LockedError
 from pellicle.runs.memory_estimate import memory_of
-from pellicle.runs.outputs import all_done, standard_outputs, writers
+from pellicle.runs.outputs import call_all, standard_outputs, writers
 from pellicle.runs.progress import progress_monitor
 from pellicle.show.sentences import caveats, failures, run_names, shared_among_processes
 
@@ -229,7 +229,7 @@ def execute(
             whole = rows.dataset()
             outputs = [o for o in standard_outputs(first.outputs) if o.scope != "run"]
             calls = writers(outputs, runs, directory / "study", first)
-            of_outputs = all_done([partial(written, call) for call in calls])
+            of_outputs = call_all([partial(written, call) for call in calls])
     for message in (*messages, *caveats(whole)):
         warnings.warn(message, stacklevel=3)
     return runner.RunOutcome(whole, (*rows.files, *chain(*of_outputs)), resumed)

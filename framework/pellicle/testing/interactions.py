@@ -16,7 +16,7 @@ from .component import check, require, require_close, rules_of
 from .small_runs import solve_small_run
 
 _RADIUS = 1e-3
-"""Radius R of the sphere [m], that of the paraboloid of `solved`."""
+"""Radius R of the sphere [m], that of the paraboloid of `solve_small_run`."""
 
 
 def check_interaction(interaction: Interaction) -> None:

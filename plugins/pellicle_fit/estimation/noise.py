@@ -76,7 +76,7 @@ class ResidualCheck(NamedTuple):
     """Exponent d of correlated noise that was taken as white; 0 if it is not of that kind."""
 
     @property
-    def widened(self) -> float:
+    def widening(self) -> float:
         """The noise that is weighed over the deviation of what is left."""
         return self.noise.deviation / self.deviation
 

@@ -14,7 +14,7 @@ from pellicle.arrays import Array
 from pellicle_fit.dynamic import misfits
 from pellicle_fit.effect import Records, Responds, Weighed
 from pellicle_fit.explanation import Balance, columns_are_rows
-from pellicle_fit.strangers import is_own
+from pellicle_fit.strangers import is_built_in
 
 from .coordinates import CONTACT_POINT, Coordinates, Slot
 from .long_memory import fractional_differences
@@ -152,7 +152,7 @@ class Objective(Coordinates):
     @cached_property
     def takes_columns(self) -> bool:
         """Whether trials are computed together; where an effect is a stranger's, that is tried."""
-        own = all(is_own(type(effect)) for effect in self.explanation.effects)
+        own = all(is_built_in(type(effect)) for effect in self.explanation.effects)
         return own or columns_are_rows(self.explanation, self.curves[0])
 
     @cached_property

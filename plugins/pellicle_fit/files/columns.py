@@ -179,7 +179,7 @@ def missing_parts(columns: Columns, calibration: Calibration) -> list[str]:
 
 @np.errstate(over="ignore", invalid="ignore")
 def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
-    """Return the curve that columns hold, of which nothing is `lacking`.
+    """Return the curve that columns hold, which has no `missing_parts`.
 
     Force is ``force``, or the spring constant times ``deflection``, which may be in volts or
     amperes if the sensitivity is known.  Position is ``position`` or ``depth``, or else that of the

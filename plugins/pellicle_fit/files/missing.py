@@ -59,7 +59,7 @@ def missing_in(
     columns: Columns,
     calibration: Calibration,
 ) -> MissingInputError:
-    """Return the error of a curve of which something is `lacking`, with columns as `guessed`.
+    """Return the error of a curve that has `missing_parts`, with columns as of `guess_roles`.
 
     Of the names of columns, the ``wrong`` ones are those of no column, or of several.
     """

@@ -48,7 +48,7 @@ class Source(NamedTuple):
     total: int = 0
     """Number of all curves, of files that were not opened yet one each; 0 if it is not known."""
 
-    def named(self, error: PellicleError, hint: str = "") -> ConfigError:
+    def with_name(self, error: PellicleError, hint: str = "") -> ConfigError:
         """Return an error with the name of the source in front, once, and a hint at the end."""
         return ConfigError(f"{self.name}: {self.reason(error)}{hint}")
 
@@ -207,7 +207,7 @@ def read_curves(path: str | Path, **calibration: Any) -> dict[str, Measurement]:
         if isinstance(source.curve, Measurement):
             curves[source.name] = source.curve
         else:
-            errors.append(source.named(source.curve))
+            errors.append(source.with_name(source.curve))
     if not curves:
         raise ConfigError("\n".join(map(str, errors)))
     for error in errors:

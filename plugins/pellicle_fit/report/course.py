@@ -15,7 +15,7 @@ def has_hold(curve: Curve) -> bool:
 def chart_over_time(fit: Fit) -> Chart:
     """Return force and fit over the time since the first row, of each curve with a hold."""
     series = list[Series]()
-    pairs = zip(fit.answer.selected.whole, fit.forces(), strict=True)
+    pairs = zip(fit.answer.selected.all_rows, fit.forces(), strict=True)
     for number, (curve, force) in enumerate(pairs):
         if not has_hold(curve):
             continue

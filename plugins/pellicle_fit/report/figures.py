@@ -81,7 +81,7 @@ def charts(fit: Fit) -> dict[str, list[Chart]]:
         beside = f", and {words_of(rival)}" if rival else ""
         caption = f"Data, the fit, by {words_of(selected)}{beside}; below, residuals."
     found = {caption: [_curves(fit, rival)]}
-    if any(has_hold(curve) for curve in selected.whole):
+    if any(has_hold(curve) for curve in selected.all_rows):
         found |= {"Force over time, with its hold; line, the fit.": [chart_over_time(fit)]}
     if fit.sines:
         caption = "Storage and loss modulus of the sines, with 95 % intervals; lines, by "
@@ -126,7 +126,7 @@ def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
     """Return data and fits over the indentation, of several curves over its largest; residuals."""
     selected, forces, count, series = fit.answer.selected, fit.forces(), len(fit.curves), []
     subtracted, depths = False, selected.depths
-    for number, (curve, force) in enumerate(zip(selected.whole, forces, strict=True)):
+    for number, (curve, force) in enumerate(zip(selected.all_rows, forces, strict=True)):
         known = selected.known[number]
         baseline, turn = known.free_force(curve), int(curve.moves_out.argmax())
         subtracted, data = subtracted or bool(baseline.any()), curve.force - baseline

@@ -17,7 +17,7 @@ _POINTS, _BEYOND = 61, 2.0
 def chart_of_sines(fit: Fit) -> Chart:
     """Return E′ and E″ of the reduced modulus over frequency, measured and by the explanation."""
     selected, series, rows = fit.answer.selected, list[Series](), iter(fit.sines)
-    for number, (known, curve) in enumerate(zip(selected.known, selected.whole, strict=True)):
+    for number, (known, curve) in enumerate(zip(selected.known, selected.all_rows, strict=True)):
         if not curve.sines:
             continue
         told = [next(rows) for _ in curve.sines]

@@ -78,7 +78,7 @@ def _of_input(answer: Answer) -> Iterator[Advice]:
     """Yield what is probably wrong with radius or units."""
     selected = answer.selected
     depths = selected.depths
-    for curve, of_rows in zip(selected.whole, depths, strict=True):
+    for curve, of_rows in zip(selected.all_rows, depths, strict=True):
         radius, depth = getattr(curve.indenter, "radius", None), float(np.max(of_rows))
         if radius and not _DEPTHS[0] <= depth / radius <= _DEPTHS[1]:
             yield Advice(Remedy.CHECK_RADIUS, {"depth": depth, "radius": radius})

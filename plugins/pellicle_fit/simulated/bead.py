@@ -53,7 +53,7 @@ def soft_bead(
     """Return a bead of a reduced modulus [Pa] and a tension [N/m] down to a depth [m].
 
     If it or the sample may have ``skins``, pairs of both are simulated; ``options`` are those of
-    `solved`.
+    `solve_contacts`.
     """
     if not isinstance(rigid, BodyOfRevolution):
         raise ConfigError("is no body of revolution; a bead that yields has to be", "indenter")

@@ -40,7 +40,7 @@ class SimulatedCurve:
     body: EquivalentBody
     """The body, with the nodes of the depth."""
     forces: Array | None = None
-    """F/E* [m²] under tension at `tensed` depths and the nodes of x, of shape (k, n)."""
+    """F/E* [m²] under tension at `tensed_depths` and the nodes of x, of shape (k, n)."""
     accuracy: float = 0.0
     """Largest relative change of some forces when the cells along each axis are halved."""
     half_space: bool = True

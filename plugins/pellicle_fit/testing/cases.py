@@ -102,6 +102,6 @@ def curves() -> Iterator[tuple[str, Curve]]:
         force = Contact.on_half_space(body, _MODULUS, 2 * float(np.ptp(depth))).force(depth)
         way = np.abs(np.diff(depth + force / STIFFNESS, prepend=depth[0]))
         curve = Curve(depth, force, body, np.cumsum(way) / _SPEED, stiffness=STIFFNESS)
-        for array in (depth, force, curve.clock, curve.base, curve.smoothed, curve.velocity):
+        for array in (depth, force, curve.clock, curve.base, curve.smooth_force, curve.velocity):
             array.flags.writeable = False
         yield f"{words} of {tip}", curve

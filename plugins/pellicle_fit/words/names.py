@@ -64,7 +64,7 @@ def unit_of(values: Sequence[float], unit: str, *, si: bool = False) -> Scale:
     return Column("", values, unit).unit_and_digits(si=si)[0]
 
 
-def unit_of_one(estimate: Estimate, *, si: bool = False) -> Scale:
+def scale_of(estimate: Estimate, *, si: bool = False) -> Scale:
     """Return the unit for the value and the ends of an estimate, as `unit_of` does."""
     ends = [end for end in (estimate.low, estimate.high) if end is not None]
     # The value of an interval that is open to one side is not shown.
@@ -108,5 +108,5 @@ def quote_estimate(estimate: Estimate, unit: Scale, digits: int, shown_unit: str
 
 def in_figures(estimate: Estimate, *, si: bool = False) -> str:
     """Return an estimate with its interval and its unit."""
-    unit = unit_of_one(estimate, si=si)
+    unit = scale_of(estimate, si=si)
     return quote_estimate(estimate, unit, FEW, f" {unit.unit}".rstrip())

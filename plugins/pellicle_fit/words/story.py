@@ -167,7 +167,7 @@ def agreement(answer: Answer, names: Sequence[str]) -> str:
 def _remarks_of_sines(answer: Answer) -> Iterator[str]:
     """Yield a warning of the sine that is explained worst, and of those that are not small."""
     selected = answer.selected
-    for number, (known, curve) in enumerate(zip(selected.known, selected.whole, strict=True)):
+    for number, (known, curve) in enumerate(zip(selected.known, selected.all_rows, strict=True)):
         if far := misfit(selected, number):
             size = f"{100 * abs(far.off):.2g} % off that of {words_of(selected)}"
             yield f"the stiffness of the sine of {far.frequency:.4g} Hz is {size}"

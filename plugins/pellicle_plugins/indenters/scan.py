@@ -40,7 +40,7 @@ class Channel(NamedTuple):
     is_height: bool
     is_areal: bool
     edges: Sequence[Edge]
-    """Two edge lengths, as `known` returns them."""
+    """Two edge lengths, as `known_edges` returns them."""
     read: Callable[[], Array]
     """Return the values along x, then y; NaN where a point is missing."""
     missing: str = "missing"

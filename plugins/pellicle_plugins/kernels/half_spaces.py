@@ -48,7 +48,7 @@ class TensedMembrane(SkinTensions, ElasticModulus, Isotropic):
     @property
     def is_isotropic(self) -> bool:
         """Whether the tension is the same in all directions."""
-        return self.is_tensed_alike
+        return self.has_one_tension
 
     @property
     def elastocapillary_length(self) -> float:

@@ -116,12 +116,12 @@ class Coated(SkinTensions, KernelOf):
     @property
     def is_isotropic(self) -> bool:
         """Whether the substrate is, and the tension is the same in all directions."""
-        return self.is_tensed_alike and self.substrate.is_isotropic
+        return self.has_one_tension and self.substrate.is_isotropic
 
     def symbol(self, qx: Array, qy: Array) -> Array:
         """Return G(q) = 1/(1/G_s + qᵀTq + B q⁴) [m/Pa], with G_s of the substrate."""
         substrate, q = self.substrate.symbol(qx, qy), np.hypot(qx, qy)
-        if self.is_tensed_alike:
+        if self.has_one_tension:
             skin = (self.one_tension + self.bending * q**2) * q**2
         else:
             skin = self.tension_stiffness(qx, qy) + self.bending * q**4

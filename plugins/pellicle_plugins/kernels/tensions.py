@@ -58,7 +58,7 @@ class SkinTensions(Model):
     )
 
     @property
-    def is_tensed_alike(self) -> bool:
+    def has_one_tension(self) -> bool:
         """Whether the tension is the same in all directions."""
         return not isinstance(self.tension, tuple)
 
@@ -82,7 +82,7 @@ class SkinTensions(Model):
 
     @model_validator(mode="after")
     def _check_angle(self) -> Self:
-        if self.angle is not None and self.is_tensed_alike:
+        if self.angle is not None and self.has_one_tension:
             raise ConfigError(
                 "is given, and the tension is the same in all directions; leave it out, or give "
                 "two tensions",

@@ -166,7 +166,7 @@ class Curves(TableFigure):
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield the curves."""
-        runs = self.shown(runs)
+        runs = self.selected_runs(runs)
         table = runs.table
         require_axes(table.sizes, self.by, "by")
         require_axes(table.sizes, [self.over] if self.over else [], "over")

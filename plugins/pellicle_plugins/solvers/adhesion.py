@@ -108,7 +108,7 @@ class AdhesionSolver(ScaledSolver):
     def step(self, problem: Problem, state: Round) -> Round:
         """Return the next round."""
         traction, missed, wall = extrapolate_rounds(
-            [*state.on_this_contact, state.tried], state.contact
+            [*state.on_this_contact, state.record], state.contact
         )
         following, contact = traction + missed, state.contact
         on_contact, changes = state.on_contact, _CHANGES
@@ -212,8 +212,8 @@ def _finished(
     history: tuple[tuple[Mask, RoundRecord], ...] = ()
     # A cell that just touches may leave the contact and return, where earlier rounds are of use.
     is_other = not np.array_equal(contact, before.contact)
-    if settled and before.settled and (is_other or is_convex(before.tried, state.tried, contact)):
-        history = (*before.history, (before.contact, before.tried))[-_MEMORY:]
+    if settled and before.settled and (is_other or is_convex(before.record, state.record, contact)):
+        history = (*before.history, (before.contact, before.record))[-_MEMORY:]
     return replace(
         state, history=history, progress=before.progress.after(state.residual, state.energy)
     )

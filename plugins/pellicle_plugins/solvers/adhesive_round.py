@@ -55,7 +55,7 @@ class Round:
         return Front(self.problem, self.contact, self.gap, self.attraction.traction)
 
     @property
-    def tried(self) -> RoundRecord:
+    def record(self) -> RoundRecord:
         """The traction that was given, what it misses, and the wall pressure."""
         return RoundRecord(self.traction, self.missed, self.wall)
 

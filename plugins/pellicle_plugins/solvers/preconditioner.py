@@ -67,7 +67,7 @@ class Preconditioner:
     def __init__(self, operator: Operator) -> None:
         self._operator = operator
         self._shape = operator.grid.shape
-        scale, parts = operator.made.get(Preconditioner, (None, None))
+        scale, parts = operator.cache.get(Preconditioner, (None, None))
         if parts is None or scale != operator.greatest:
             parts = _Parts.of(operator)
             operator.keep(Preconditioner, (operator.greatest, parts))

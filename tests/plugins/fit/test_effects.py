@@ -482,7 +482,7 @@ def test_what_fails_at_work_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
         def force(self, contact: Contact, curve: Curve, depth: Array) -> Array:
             return super().force(contact, curve, depth if curve.span < 1.55e-6 else depth[10**9])
 
-    entry = SimpleNamespace(component=Late, origin=SimpleNamespace(is_own=False))
+    entry = SimpleNamespace(component=Late, origin=SimpleNamespace(is_built_in=False))
     installed = SimpleNamespace(components={"effect": {"push": entry}})
     monkeypatch.setattr("pellicle_fit.strangers.registry", lambda: installed)
     with pytest.raises(IndexError) as caught:

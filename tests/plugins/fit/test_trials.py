@@ -190,11 +190,11 @@ def test_end_where_chi_squared_jumps() -> None:
 
     way = _Way(cast("Any", objective), minimum(0.0), np.ones((4, 1)), 0, 1, 4.0)
     here = way.distance
-    way.reached(minimum(100.0))
+    way.advance(minimum(100.0))
     assert way.distance < here
     # Searches of two starts disagree about one point.
     way.distance = here
-    way.reached(minimum(0.0))
-    assert way.ended
+    way.advance(minimum(0.0))
+    assert way.is_done
     assert way.kind is End.CLOSED
     assert way.end == pytest.approx(here)

@@ -29,7 +29,7 @@ def plate(dx: float, dy: float, shape: tuple[int, int] = SHAPE) -> Problem:
 def settle(
     problem: Problem, contact: Mask, inner: InnerSolution, margin: float = MARGIN
 ) -> tuple[Mask, Array]:
-    """Return what `relaxed` makes of what an inner solve found on a contact."""
+    """Return what `relax_locally` makes of what an inner solve found on a contact."""
     on_contact = Preconditioner(problem.operator).on(contact)
     return relax_locally(problem, on_contact, inner, margin)
 

@@ -9,7 +9,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import read_only
 from pellicle.components.kernel import Kernel, branches_of
-from pellicle.contact.time_step import relax_alike
+from pellicle.contact.time_step import have_equal_branches
 from pellicle.errors import excerpt
 from pellicle.grid import Grid
 from pellicle.surface.from_kernel import (
@@ -185,7 +185,7 @@ def scaled_stiffens_the_solid_alone(kernel: Kernel, case: Case) -> str:
 def without_skin_has_no_skin(kernel: Kernel, case: Case) -> str:
     """The solid without its skin relaxes as the kernel does, and has no skin to take off."""
     solid, waves = kernel.without_skin(), _vectors(kernel, _waves(case.grid))
-    if not relax_alike(branches_of(solid), branches_of(kernel)):
+    if not have_equal_branches(branches_of(solid), branches_of(kernel)):
         wrong = "relaxes as another kernel does" if branches_of(solid) else "does not relax"
         return f"without_skin() {wrong}"
     return difference(

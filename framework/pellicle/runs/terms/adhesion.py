@@ -51,14 +51,14 @@ def adhesion(run: Run, step: ContactStep, surroundings: AroundContact) -> Contac
     if not isinstance(equilibrium, AdhesiveEquilibrium) or interaction is None:
         return step
     if step.stop is Stop.PULLED_OFF:
-        step = step.having({}, [_pulled_off(run, step, surroundings)])
+        step = step.with_measures({}, [_pulled_off(run, step, surroundings)])
     touched = setting.state is not None and bool(setting.state.contact.any())
     as_whole = bool(equilibrium.contact.any()) != touched
     jumped = step.jumped or _asperity_jumped(setting.state, equilibrium)
     lost = _jump_energy(run, equilibrium, surroundings, is_certain=jumped, as_whole=as_whole)
     jumped = jumped or lost > 0
     limit = _force_limit(run, interaction, equilibrium, surroundings.monitor)
-    step = step.having({"jumped": jumped, "jump_energy": lost, **limit})
+    step = step.with_measures({"jumped": jumped, "jump_energy": lost, **limit})
     if not step.converged:
         return step
     caveats, cells = [], equilibrium.zone_width / run.grid.cell_size
@@ -67,7 +67,7 @@ def adhesion(run: Run, step: ContactStep, surroundings: AroundContact) -> Contac
     if jumped and not as_whole and equilibrium.contact.any():
         loss = "known" if lost > 0 else "unknown"
         caveats.append(Caveat(Status.JUMPED, {"lost": lost, "loss": loss}))
-    return step.having({}, caveats)
+    return step.with_measures({}, caveats)
 
 
 def _force_limit(

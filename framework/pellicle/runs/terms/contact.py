@@ -29,11 +29,11 @@ _CONSTANT: Final = 0.05
 def contact(run: Run, step: ContactStep, around: AroundContact) -> ContactStep:
     """Add why the step is not a solution, or else what its cells and the theory do not hold."""
     if not np.isfinite(step.equilibrium.force):
-        return step.having({}, [Caveat(Status.NOT_FINITE)])
-    step = step.having({}, _failures(run, step, around))
+        return step.with_measures({}, [Caveat(Status.NOT_FINITE)])
+    step = step.with_measures({}, _failures(run, step, around))
     if not step.converged:
         return step
-    return step.having({}, [*_coarse(run, step.equilibrium), *_steep(run, step.equilibrium)])
+    return step.with_measures({}, [*_coarse(run, step.equilibrium), *_steep(run, step.equilibrium)])
 
 
 def _failures(run: Run, step: ContactStep, around: AroundContact) -> Iterator[Caveat]:

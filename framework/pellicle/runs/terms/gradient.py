@@ -91,7 +91,7 @@ class Gradient:
             )
             derivatives[f"force_by_{name}"] = force if known else np.nan * force
             derivatives[f"depth_by_{name}"] = depth if known else np.nan * depth
-        return step.having(
+        return step.with_measures(
             {name: float(value) for name, value in derivatives.items() if np.ndim(value) == 0},
             fields={name: value for name, value in derivatives.items() if np.ndim(value)},
         )
