@@ -181,17 +181,8 @@ def force(kernel: dict[str, Any], indenter: dict[str, Any], depth: float, points
 
 
 @pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
-def test_the_solver_presses_a_paraboloid(ratio: float) -> None:
-    """At the depth of a radius of contact, the force is that of the table within 0.3 %."""
-    entry = row("tensed_paraboloid", s_over_a=ratio)
-    depth = entry["depth_over_Hertz"] * A**2 / RADIUS
-    expected = entry["F_over_Hertz"] * 4 * MODULUS * A**3 / (3 * RADIUS)
-    assert force(tensed(ratio, A), PARABOLOID, depth, 64) == pytest.approx(expected, rel=3e-3)
-
-
-@pytest.mark.parametrize("ratio", [0.1, 1.0, 10.0])
 def test_the_solver_presses_a_cone(ratio: float) -> None:
-    """The same for a cone, within 0.6 %: its tip is one cell wide."""
+    """Where the contact has a radius A the force is that of the table within 0.6 %."""
     entry, flank = row("tensed_cone", s_over_a=ratio), 0.05
     cone = {"type": "cone", "half_angle": float(np.arctan(1 / flank))}
     depth = entry["depth_over_Sneddon"] * np.pi * A * flank / 2

@@ -217,32 +217,6 @@ def test_one_pressed_cell_gives_the_reference_influence_coefficients(s_over_d: f
         assert abs(u[int(row["i"]), int(row["j"])] - expected) <= 1e-9 * expected + 1e-15
 
 
-@pytest.mark.slow
-def test_the_published_figure_3(solver: str) -> None:
-    """Yuan & Wang 2020, Figure 3: the counted area is 4 % off at N = 32, < 0.5 % beyond N = 256."""
-    from pellicle_axisymmetric.indentation import indent
-    from pellicle_plugins.indenters.of_revolution import Paraboloid
-
-    true = np.pi * indent(Paraboloid(radius=1e-3), 10e3, 1.0, depth=0.05e-3).contact_radius ** 2
-    errors = {}
-    for points in (32, 64, 128, 272):
-        step = solved(
-            solver,
-            1e-6,
-            grid={"points": points, "size": 2 * np.sqrt(1e-3 * 0.05e-3)},
-            kernel=tensed(1e4, 1.0),
-            indenter=paraboloid(1e-3),
-            loading={"depth": 5e-5},
-            corrections=[{"type": "yastrebov"}],
-        )
-        counted = float(step["contact_area"]) / true - 1
-        corrected = float(step["contact_area_yastrebov"]) / true - 1
-        assert abs(corrected) < abs(counted)
-        errors[points] = counted
-    assert errors[32] == pytest.approx(0.04, abs=0.005)
-    assert abs(errors[272]) < 0.005
-
-
 POINTS = np.array([16, 32, 64, 128])
 A = 0.1
 
