@@ -191,7 +191,7 @@ def test_segments_that_are_joined_while_they_are_read(
             storage.close(path)
         return plain(part, *arguments)
 
-    monkeypatch.setattr(storage, "opened", join_first)
+    monkeypatch.setattr(storage, "open_file", join_first)
     assert storage.read(path)["step"].values.tolist() == [1, 2, 3, 4]
     assert list(path.parent.iterdir()) == [path]
 

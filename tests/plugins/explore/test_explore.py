@@ -301,7 +301,7 @@ def test_a_long_solve_is_cancelled(
 
     monkeypatch.setattr(solving, "_LONGEST_WAIT", 0.0)
     with monkeypatch.context() as slow:
-        slow.setattr(solving, "solved", endless)
+        slow.setattr(solving, "solve_frame", endless)
         page = Page(start)
         assert began.wait(20)
     if is_closed:
