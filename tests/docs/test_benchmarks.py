@@ -29,14 +29,9 @@ SCRIPTS = {
         20,
         {"rough, N = 32": r"[1-4]?\d"},
     ),
-    "cost.py": (
-        ["--cases", "rough", "punch", "--points", "32", "--tension", "0.02"],
-        2,
-        {"applications": r"[1-3]\d", "contact": r"0\.\d+", "seconds": r"\d+\.\d+"},
-    ),
 }
 """Options of a script, number of rows, and patterns that all cells of a column match."""
-SLOW = {"fit_verdicts.py", "cost.py"}
+SLOW = {"fit_verdicts.py"}
 
 
 @pytest.mark.parametrize(
