@@ -151,7 +151,7 @@ def test_sheet_of_very_many_curves() -> None:
 
 
 def test_long_lists_of_curves_are_shown_on_demand(tmp_path: Path) -> None:
-    """A page begins with what was found, not with hundreds of reasons."""
+    """A page begins with what was found, not with hundreds of reasons or of curves."""
     for count in (30, 31):
         rows = [row("a"), *(row(f"b{n}", None) for n in range(count))]
         for number, one in enumerate(rows[1:]):
@@ -161,10 +161,6 @@ def test_long_lists_of_curves_are_shown_on_demand(tmp_path: Path) -> None:
         assert f"b{count - 1}: failed: no contact: {count - 1} nN" in page
         folded = f"<summary>{count} of {count + 1} curves could not be fitted.</summary>"
         assert (folded in page) == (count == 31)
-
-
-def test_long_tables_of_curves_are_shown_on_demand() -> None:
-    """A page of many curves begins with their table folded."""
     assert not tables.rows([row("a")] * 200).folded
     assert tables.rows([row("a")] * 201).folded
 
