@@ -254,7 +254,7 @@ REFUSED: dict[str, list[str | tuple[str, str]]] = {
         "position [nm];force [nN]\n2.500;-0,01\n3.500;0,5\n",
     ],
     # 1,5 at 2,7 was a position of 1 at a force of 5.
-    r"has 4 numbers below 2 names \(1,5": [f"{UNITS}\n1,5,2,7\n1,6,2,9\n"],
+    r"has 4 numbers below 2 names \(1,5,2,7\)": [f"{UNITS}\n1,5,2,7\n1,6,2,9\n"],
     "has 4 numbers below 2 names": [
         f"{UNITS}\n{rows(comma=True)}",
         (f"Z [um],F [nN]\n{rows(comma=True)}", "Z = position um, F = force nN"),
