@@ -23,7 +23,6 @@ from pellicle.components import Component, Executor, HasForceCurve, Indenter, Sa
 from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.files import atomic_write, check_writable, is_file
 
-from .alike import beside, representatives
 from .config import FitConfig
 from .config_input import describe_indenter
 from .estimation.coordinates import MODULUS
@@ -37,8 +36,9 @@ from .population.row import Row, as_json, sketch
 from .problem import FitProblem, components_of, problem, record_of
 from .report.paper_table import save_tables
 from .report.population import save_population
+from .representatives import beside, representatives
 from .result import data_of
-from .sealed import read_sealed, write_sealed
+from .sealed_json import read_sealed, write_sealed
 from .selection.calibration import common_errors
 from .selection.neighbour import Neighbour
 from .words.story import shares

@@ -10,9 +10,9 @@ from pellicle.batch import Part, lock_files
 from pellicle.components import Say, Task
 from pellicle.errors import StorageError
 
-from .alike import Near
 from .population.row import Row
-from .sealed import read_sealed, write_sealed
+from .representatives import Near
+from .sealed_json import read_sealed, write_sealed
 
 FITTED_ELSEWHERE = "another process fits it"
 Work = Callable[[Any, Say], dict[str, Any]]

@@ -11,7 +11,7 @@ import xarray as xr
 
 import pellicle as pl
 from pellicle.runs.lock import lock_files
-from pellicle_fit.alike import kind_of, neighbours, order_of
+from pellicle_fit.representatives import kind_of, neighbours, order_of
 from pellicle_fit.selection.neighbour import RULED_OUT, Neighbour
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.command import Cli, run_parts

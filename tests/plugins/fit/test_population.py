@@ -37,7 +37,7 @@ from pellicle_fit.population.row import Row
 from pellicle_fit.report import tables
 from pellicle_fit.report.contact_sheet import sheets
 from pellicle_fit.report.population import distributions
-from pellicle_fit.sealed import read_sealed, write_sealed
+from pellicle_fit.sealed_json import read_sealed, write_sealed
 from pellicle_fit.words.names import quote_estimate, unit_of
 from pellicle_fit.words.population import sentences_of_population
 from tests.command import Cli, call

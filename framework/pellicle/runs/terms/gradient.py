@@ -28,7 +28,7 @@ from pellicle.surface.from_kernel import operator_of
 from pellicle.surface.operators import weighted_sum
 
 from . import ContactStep, Surroundings
-from .requested import add_response
+from .extra_measures import add_response
 
 _WAVES: Final = 24
 _WIDER: Final = 1.5

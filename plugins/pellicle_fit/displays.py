@@ -24,7 +24,7 @@ from .record import Record
 from .report.figures import save_figure
 from .report.population import save_population
 from .result import Fit
-from .sealed import read_sealed
+from .sealed_json import read_sealed
 
 
 def file_display(file: Path) -> StoredFit | StoredFits:
