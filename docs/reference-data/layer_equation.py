@@ -129,8 +129,8 @@ def _split(panel: Panel, longest: float) -> list[Panel]:
         return [panel]
     length = panel.length / count
     offset = length * (gauss(panel.nodes.psi.size)[0] + 1) / 2
-    starts = [panel.start.moved(np.asarray(index * length)) for index in range(count)]
+    starts = [panel.start.shift(np.asarray(index * length)) for index in range(count)]
     return [
-        Panel(start, start.moved(np.asarray(length)), length, start.moved(offset))
+        Panel(start, start.shift(np.asarray(length)), length, start.moved(offset))
         for start in starts
     ]

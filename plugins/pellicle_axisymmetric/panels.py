@@ -29,7 +29,7 @@ class Points:
         """Position in units of the contact radius."""
         return np.sin(self.psi)
 
-    def moved(self, offset: Array) -> Points:
+    def shift(self, offset: Array) -> Points:
         """Return the points with ψ increased by an offset of broadcastable shape."""
         return Points(self.psi + offset, self.eta - offset)
 

@@ -84,7 +84,7 @@ def weights(
         nearest = Points(
             np.where(inside, targeted.psi, end.psi), np.where(inside, targeted.eta, end.eta)
         )
-        source = nearest.moved(side * span * xi)
+        source = nearest.shift(side * span * xi)
         values = kernel(_chord(targeted, source, offset), source, targeted)
         local = side * (1 - 2 * (distance[pick][:, None] - offset) / length)
         basis = legvander(local, order - 1) @ rule[2]

@@ -143,8 +143,8 @@ TWO_RUNS = run_file("[study.vary]\nkernel.reduced_modulus = ['10 kPa', '20 kPa']
 def another_process(folder: Path, name: str) -> Iterator[subprocess.Popen[bytes]]:
     """Have another process lock files."""
     code = (
-        "import sys, pathlib\nfrom pellicle.runs.lock import locked\n"
-        "with locked(pathlib.Path(sys.argv[1]), sys.argv[2]):\n"
+        "import sys, pathlib\nfrom pellicle.runs.lock import lock_files\n"
+        "with lock_files(pathlib.Path(sys.argv[1]), sys.argv[2]):\n"
         "    print('locked', flush=True)\n    sys.stdin.read()"
     )
     holder = subprocess.Popen(

@@ -164,7 +164,7 @@ def execute(
             ) from None
         finally:
             if steps:
-                result = Result(with_events(steps.joined()))
+                result = Result(with_events(steps.join_steps()))
                 if journal:
                     calls = [journal.close, *writers(outputs, runs, journal.stem, run)]
                     files = tuple(chain(*call_all(calls)))

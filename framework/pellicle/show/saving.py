@@ -105,7 +105,7 @@ def save_pages(
     # The fonts are embedded as the file is closed, after the figures.
     with (
         atomic_write(path) as part,
-        FigureStyle().applied(),
+        FigureStyle().apply_style(),
         PdfPages(part, metadata={"CreationDate": None}) as file,
     ):
         for draw in draws:
@@ -153,7 +153,7 @@ def _figure(
     from matplotlib.text import Text
 
     style = style or FigureStyle()
-    with style.applied():
+    with style.apply_style():
         figure = Figure(figsize=style.size(size), dpi=150, layout="constrained")
         draw(figure)
         # SVG repeats every text in a comment of its XML.

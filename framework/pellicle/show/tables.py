@@ -171,7 +171,7 @@ def plan_table(tasks: Sequence[RunTask]) -> tuple[Table, str]:
     """Return a row for each run, finished or not, and a sentence on all."""
     rows, done = [], 0
     for task in tasks:
-        _, finished, problem = task.stored()
+        _, finished, problem = task.read_steps()
         done += finished >= task.steps
         nx, ny = task.run.grid.points
         state = f"{finished} of {task.steps} steps done" if finished < task.steps else "done"

@@ -78,4 +78,4 @@ def execute_part(
 
 def runs_to_do(tasks: Sequence[RunTask]) -> list[RunTask]:
     """Return the runs whose files lack steps."""
-    return [task for task in tasks if task.stored()[1] < task.steps]
+    return [task for task in tasks if task.read_steps()[1] < task.steps]

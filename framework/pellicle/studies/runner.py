@@ -75,7 +75,7 @@ class RunTask:
         """Number of load steps of the whole run."""
         return self.run.steps
 
-    def stored(self) -> tuple[xr.Dataset | None, int, str]:
+    def read_steps(self) -> tuple[xr.Dataset | None, int, str]:
         """Return the steps in its file, if any, their number, and why it cannot be used, if so."""
         try:
             numbers = self.journal.finished()
@@ -308,7 +308,7 @@ def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
     Warnings are stored in the attributes, so that a warning is shown once for all runs. Another
     process may have finished the run since it was planned.
     """
-    numbers, count, _ = task.stored()
+    numbers, count, _ = task.read_steps()
     if numbers is not None and count == task.steps:
         return with_events(numbers).assign_attrs({WARNINGS: []})
     bar = nullcontext(partial(progress_monitor, steps=task.steps, show=say))
@@ -342,7 +342,7 @@ def _recorded_warnings() -> Iterator[list[warnings.WarningMessage]]:
 def _collect(task: RunTask, rows: table.StudyTable) -> int:
     """Copy the steps in the file of a run into the table; return their number."""
     # A run whose file cannot be used will fail with a message that names the remedy.
-    numbers, count, _ = task.stored()
+    numbers, count, _ = task.read_steps()
     if numbers is not None:
         rows.put(task.index, with_events(numbers))
     return count

@@ -87,7 +87,7 @@ class Case(NamedTuple):
         return self.curve.force if is_force else self.curve.position
 
     @property
-    def allowed(self) -> float:
+    def force_tolerance(self) -> float:
         """Difference of forces that is none [N]."""
         known = Explanation(Solid(reduced_modulus=self.modulus, contact_point=0.0), (self.effect,))
         return max(_ROUNDING, 3 * known.accuracy(self.curve)) * self.curve.largest

@@ -178,7 +178,7 @@ class ActiveSet(ScaledSolver):
         if state.bends and (after := _after_relaxation(problem, state, inner, history, goal)):
             return after
         on_contact = _changed(problem, state, inner, history)
-        trial = on_contact.transferred(inner.pressure, out=inner.pressure)
+        trial = on_contact.transfer(inner.pressure, out=inner.pressure)
         # This frees an array while the next displacement is computed.
         del inner
         return _iterate(problem, on_contact, trial, history, state)
@@ -264,7 +264,7 @@ def _after_relaxation(
         return None
     settled, forces = relax_locally(problem, state.on_contact, inner, goal)
     on_contact = state.on_contact.preconditioner.on(settled)
-    trial = on_contact.transferred(forces)
+    trial = on_contact.transfer(forces)
     if not trial.sum() > 0:
         return None
     after = _iterate(problem, on_contact, trial, history, state)
@@ -290,7 +290,7 @@ def _without_pits(problem: Problem, state: _Iterate) -> _Iterate:
     if not retained.any() or retained.sum() == on_contact.cells.size:
         return state
     on_contact = on_contact.preconditioner.on(retained)
-    return _iterate(problem, on_contact, on_contact.transferred(state.trial))
+    return _iterate(problem, on_contact, on_contact.transfer(state.trial))
 
 
 def _changed(

@@ -114,12 +114,12 @@ class AdhesionSolver(ScaledSolver):
         on_contact, changes = state.on_contact, _CHANGES
         # On springs a front has no stiffness, and a shift would leave the minimum of each cell.
         if state.front.length and not problem.operator.is_bed:
-            following, contact = state.front.moved(following, missed, state.gain)
+            following, contact = state.front.move_front(following, missed, state.gain)
         following = np.clip(following, -state.problem.law.strength(), 0.0)
         if not np.array_equal(contact, state.contact):
             on_contact, changes = on_contact.preconditioner.on(contact), _CHANGES - 1
         # The contact takes up what the change of the tractions lifts.
-        wall = on_contact.transferred(wall + traction - following)
+        wall = on_contact.transfer(wall + traction - following)
         wall[~contact] = 0.0
         after = self._closed(state.problem, on_contact, wall, following, state, changes)
         if state.gain > _LEAST_GAIN and _has_risen(state, after):
@@ -158,7 +158,7 @@ class AdhesionSolver(ScaledSolver):
         contact = on_contact.contact
         settled = False
         for _ in range(changes):
-            balanced = _with_wall_force(problem, contact, on_contact.transferred(wall), traction)
+            balanced = _with_wall_force(problem, contact, on_contact.transfer(wall), traction)
             if balanced is None:
                 nothing = np.zeros(problem.grid.shape)
                 released = on_contact.preconditioner.on(nothing > 0)

@@ -73,7 +73,7 @@ class Front:
         limit = np.clip(np.abs(estimate), few_cells, max(few_cells, _MOST_SHARE * self.extent))
         return np.clip(gain * estimate, -limit, limit)
 
-    def moved(self, traction: Array, missed: Array, gain: float) -> tuple[Array, Mask]:
+    def move_front(self, traction: Array, missed: Array, gain: float) -> tuple[Array, Mask]:
         """Return tractions [Pa] and contact after the front has moved by what is ``missed``."""
         from scipy.ndimage import distance_transform_edt
 

@@ -195,12 +195,12 @@ class OnContact:
         direction *= np.float32(size)
         return direction
 
-    def extended(self, values: Array | Field) -> Field:
+    def extend(self, values: Array | Field) -> Field:
         """Return E applied to one value per cell of `cells`, on the grid."""
         nx, ny = self.contact.shape
         return self._apply(values)[:nx, :ny]
 
-    def transferred(self, forces: Array, out: Array | None = None) -> Array:
+    def transfer(self, forces: Array, out: Array | None = None) -> Array:
         """Return forces [Pa] after transferring those off the contact onto it by Eᵀ.
 
         ``out`` is in C order and may be ``forces``.

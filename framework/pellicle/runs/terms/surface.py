@@ -35,7 +35,7 @@ def surface(run: Run, step: AnyStep, around: Surroundings) -> AnyStep:
     if abs(float(pressure.sum())) <= _ROUNDING * float(np.abs(pressure).sum()):
         measures |= {"force": 0.0, "mean_pressure": 0.0}
     assert run.load is not None
-    if path := run.load.varied:
+    if path := run.load.varying_field:
         measures[path.variable.name] = path.values[len(around.path)]
     load = run.load.at(len(around.path))
     return step.with_measures(measures | {"surface_slope": slope}, _limits(run, load, slope))

@@ -47,7 +47,7 @@ def relax_locally(
     size = float(np.abs(solution.pressure).max())
     floor = (gap * (-stiffness.greatest / size)).astype(np.float32)
     load = (solution.pressure / size).astype(np.float32)
-    increment = np.maximum(floor, on_contact.extended(floor[contact]))
+    increment = np.maximum(floor, on_contact.extend(floor[contact]))
     load += stiffness(increment)
     floor -= increment
     changed = contact.copy()
