@@ -131,6 +131,6 @@ def _split(panel: Panel, longest: float) -> list[Panel]:
     offset = length * (gauss(panel.nodes.psi.size)[0] + 1) / 2
     starts = [panel.start.shift(np.asarray(index * length)) for index in range(count)]
     return [
-        Panel(start, start.shift(np.asarray(length)), length, start.moved(offset))
+        Panel(start, start.shift(np.asarray(length)), length, start.shift(offset))
         for start in starts
     ]
