@@ -141,12 +141,13 @@ def run(
 def _exit_by_part(solved: PartOutcome, whole: str, *, json: bool, quiet: bool) -> NoReturn:
     """Print what a part left and which of its runs failed, and exit by these."""
     if json:
-        print_json({"failed": solved.failed, "left": solved.left})
+        print_json({"failed": solved.failures, "left": solved.open_runs})
     elif not quiet:
-        echo(f"{solved.left} of {whole} are left; the last part, or no --part, writes the table")
-    for sentence in solved.failed:
+        left = solved.open_runs
+        echo(f"{left} of {whole} are left; the last part, or no --part, writes the table")
+    for sentence in solved.failures:
         echo(sentence, err=True)
-    raise typer.Exit(NOT_CONVERGED if solved.failed else 0)
+    raise typer.Exit(NOT_CONVERGED if solved.failures else 0)
 
 
 @hookimpl

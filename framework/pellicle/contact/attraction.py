@@ -33,10 +33,10 @@ class Attraction:
 
     law: Law
     contact: Mask
-    closed: Mask
+    closed_cells: Mask
     """Cells whose traction no gap reduces."""
     inner: Mask
-    """Cells of `closed` without points, whose energy is that of a closed gap."""
+    """Cells of `closed_cells` without points, whose energy is that of a closed gap."""
     cells: Cells
     """Flat indices of the cells to which a point belongs, (corner, point)."""
     weights: Array
@@ -50,7 +50,7 @@ class Attraction:
     def traction(self) -> Array:
         """Traction on each cell [Pa]; −(strength) within a contact."""
         traction = self._on_cells(self.law.traction(self.gap))
-        traction[self.closed] = -self.law.strength()
+        traction[self.closed_cells] = -self.law.strength()
         return traction
 
     @property

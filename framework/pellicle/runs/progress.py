@@ -30,7 +30,7 @@ class ProgressMessage(NamedTuple):
     iteration: int
     residual_ratio: float
     """Residual over the tolerance."""
-    done: float
+    progress: float
     """Number of finished steps, plus the finished share of the current one."""
 
 
@@ -99,7 +99,7 @@ class RunProgress(_Progress):
             assert self._bars
             self._bars.update(
                 self._task,
-                completed=message.done,
+                completed=message.progress,
                 description=f"step {message.step + 1}/{message.steps}",
                 message=f"iteration {message.iteration} "
                 f"residual {message.residual_ratio:.1e} × tolerance",
@@ -162,9 +162,9 @@ class BatchProgress(_Progress):
             task_id, _ = self._running[task.name]
         else:
             task_id = self._bars.add_task(f"  {task.name}", total=float(message.steps), message="")
-        self._running[task.name] = task_id, message.done / message.steps
+        self._running[task.name] = task_id, message.progress / message.steps
         where = f"step {message.step + 1}/{message.steps} iteration {message.iteration}"
-        self._bars.update(task_id, completed=message.done, message=where)
+        self._bars.update(task_id, completed=message.progress, message=where)
         self._advance()
 
     def finished(self, task: Task, verdict: str, failed: bool) -> None:

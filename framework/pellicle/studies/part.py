@@ -33,9 +33,9 @@ from .runner import (
 class PartOutcome(NamedTuple):
     """What became of a part while runs of other parts are left."""
 
-    failed: list[str]
+    failures: list[str]
     """A sentence for each of its runs that failed or did not converge."""
-    left: int
+    open_runs: int
     """Number of runs of the study that are not finished."""
 
 
