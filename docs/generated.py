@@ -17,7 +17,7 @@ from typing import Any
 import pellicle as pl
 from pellicle import analysis, testing
 from pellicle.components import words_of_type
-from pellicle.components.rules import CHEAP, required
+from pellicle.components.rules import CHEAP, requirement_of
 from pellicle.config.describe import FieldRow, field_rows
 from pellicle.config.explain import explanations
 from pellicle.plugins.commands import commands, typer_command
@@ -270,7 +270,7 @@ def rules_of_families() -> str:
         module = import_module(f"{testing.__name__}.{family}s")
         rules = [*CHEAP.get(family, ()), *testing.rules_of(module.__name__)]
         parts += [f"**{_HEADINGS[family]}**\n"]
-        parts += [f"- {required(rule).partition('. ')[0].rstrip('.')}." for rule in rules]
+        parts += [f"- {requirement_of(rule).partition('. ')[0].rstrip('.')}." for rule in rules]
         parts.append("")
     return "\n".join(parts)
 

@@ -10,6 +10,7 @@ import xarray as xr
 import pellicle as pl
 from pellicle_axisymmetric.adhesive_contact import Adhesion
 from pellicle_plugins.indenters.of_revolution import Paraboloid
+from tests import tables_of_runs as tables
 from tests.tables_of_runs import heights, self_affine
 
 FORCE = pi
@@ -25,9 +26,7 @@ def theory(length: float) -> Adhesion:
 
 def half_space(length: float) -> dict[str, Any]:
     """Return the kernel of a half-space with an elastocapillary length s, 0 included."""
-    if not length:
-        return {"type": "half_space", "reduced_modulus": 1.0}
-    return {"type": "tensed_membrane", "reduced_modulus": 1.0, "tension": length / 2}
+    return tables.tensed(1.0, length / 2) if length else tables.half_space()
 
 
 def solved(
@@ -110,9 +109,7 @@ def relaxing(
     fraction: float = 0.8, time: float = 1.0, solid: dict[str, Any] | None = None
 ) -> dict[str, Any]:
     """Return a kernel of which a fraction relaxes; by default E* = 5 relaxes to 1 in a time 1."""
-    solid = solid or {"type": "half_space", "reduced_modulus": 5.0}
-    relaxation = [{"fraction": fraction, "time": time}]
-    return {"type": "viscoelastic", "solid": solid, "relaxation": relaxation}
+    return tables.relaxing(solid or tables.half_space(5.0), fraction, time)
 
 
 def pulled_off(

@@ -50,15 +50,16 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> Generator[None]:
     So no process ends with a long file while the other is idle. A test without a stored duration is
     not quick.
     """
-    seconds = durations.stored()
-    for item in items:
-        is_short = seconds.get(durations.function_of(item.nodeid), inf) <= durations.QUICK
+    functions = {item: durations.function_of(item.nodeid) for item in items}
+    seconds = durations.with_moved(durations.stored(), functions.values())
+    for item, function in functions.items():
+        is_short = seconds.get(function, inf) <= durations.QUICK
         if is_short and item.get_closest_marker("slow") is None:
             item.add_marker("quick")
     yield
     of_file: dict[Path, float] = defaultdict(float)
     for item in items:
-        of_file[item.path] += seconds.get(durations.function_of(item.nodeid), 0.0)
+        of_file[item.path] += seconds.get(functions[item], 0.0)
     items.sort(key=lambda item: -of_file[item.path])
 
 

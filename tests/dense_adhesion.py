@@ -124,7 +124,6 @@ class DenseContact:
         return exerted
 
     def energy(self, wall: Array, traction: Array, depth: float) -> float:
-        """Return the energy [J]."""
         pressure = wall + traction
         gaps, acts = self._at_points(self.gap(pressure, depth), wall > 0)
         bound = self.law.energy(np.clip(gaps, 0.0, self.law.cutoff())[acts])

@@ -11,6 +11,7 @@ import pellicle as pl
 from pellicle_fit.contact.curve import Curve
 from pellicle_fit.effect import Effect, Solid
 from pellicle_fit.explanation import Explanation
+from tests.tables_of_runs import coated, paraboloid, pressing, steps
 
 Array = Any
 RADIUS, DEPTH, MODULUS, ROWS = 5e-6, 8e-7, 1e4, 350
@@ -54,16 +55,10 @@ def solved(
     shear = MODULUS * (1 - gel.ratio) / 2
     solid: dict[str, Any] = {"type": "poroelastic", "shear_modulus": shear, "surface": gel.surface}
     solid |= {"poissons_ratio": gel.ratio, "diffusivity": gel.diffusivity}
-    if gel.tension:
-        solid = {"type": "coated", "tension": gel.tension, "substrate": solid}
-    run = {
-        "grid": {"points": points, "size": 3.1 * float(np.sqrt(radius * DEPTH))},
-        "kernel": solid,
-        "indenter": {"type": "paraboloid", "radius": radius},
-        "loading": {"depth": depth.tolist(), "time": (seconds * time).tolist()},
-        "solver": {"type": "active_set", "tolerance": 1e-6},
-    }
-    force = pl.run(run, progress=False).dataset.force.values
+    size, path = 3.1 * float(np.sqrt(radius * DEPTH)), (seconds * time).tolist()
+    skin = coated(solid, gel.tension)
+    run = pressing(points, size, skin, paraboloid(radius), depth=depth.tolist(), time=path)
+    force = steps(tolerance=1e-6, converged=False, **run).force.values
     return np.array([seconds * time, depth, force])
 
 

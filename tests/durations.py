@@ -8,13 +8,14 @@ import csv
 import os
 import time
 from collections import defaultdict
-from collections.abc import Generator
+from collections.abc import Generator, Iterable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 STORED = Path(__file__).with_suffix(".csv")
+ROOT = STORED.parents[1]
 QUICK = 0.05
 """Mean CPU seconds of a case up to which a test is quick: with this, three quarters are."""
 
@@ -24,10 +25,28 @@ def function_of(nodeid: str) -> str:
     return nodeid.partition("[")[0]
 
 
+def name_of(function: str) -> str:
+    """Return the name of a test function without its file."""
+    return function.rpartition("::")[2]
+
+
 def stored() -> dict[str, float]:
     """Return the mean CPU seconds of a case of each stored test function."""
     with STORED.open(encoding="utf-8", newline="") as file:
         return {row["test"]: float(row["seconds"]) for row in csv.DictReader(file)}
+
+
+def with_moved(rows: dict[str, float], functions: Iterable[str]) -> dict[str, float]:
+    """Return rows of some functions; one that has moved to another file has its former row."""
+    by_name = {name_of(row): seconds for row, seconds in rows.items()}
+    found = {function: rows.get(function, by_name.get(name_of(function))) for function in functions}
+    return {function: seconds for function, seconds in found.items() if seconds is not None}
+
+
+def is_there(function: str) -> bool:
+    """Whether a test function stands in its file, so that its row is worth keeping."""
+    path = ROOT / function.partition("::")[0]
+    return path.is_file() and f"def {name_of(function)}(" in path.read_text(encoding="utf-8")
 
 
 class Durations:
@@ -41,7 +60,6 @@ class Durations:
         self.seconds: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))
 
     def pytest_runtest_logstart(self) -> None:
-        """Begin to count: what came before is no test's."""
         self.before = _cpu_seconds()
 
     @pytest.hookimpl(wrapper=True)
@@ -82,14 +100,14 @@ class Durations:
                     self.users[place].append(report.nodeid)
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
-        """Write the file anew, where tests that have not run keep what they had."""
+        """Write the file anew, without tests that are gone; those not run keep their rows."""
         if hasattr(session.config, "workerinput"):
             return
         for place, seconds in self.shared.items():
             for nodeid in self.users[place]:
                 self.seconds[function_of(nodeid)][nodeid] += seconds / len(self.users[place])
         measured = {test: sum(c.values()) / len(c) for test, c in self.seconds.items()}
-        means = stored() | measured
+        means = {test: mean for test, mean in stored().items() if is_there(test)} | measured
         with STORED.open("w", encoding="utf-8", newline="") as file:
             rows = csv.writer(file, lineterminator="\n")
             rows.writerow(["test", "seconds"])

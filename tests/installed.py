@@ -17,7 +17,6 @@ class Installed(Distribution):
         return self.header if filename == "METADATA" else None
 
     def locate_file(self, path: object) -> Path:
-        """Refuse: there are no files."""
         raise FileNotFoundError(path)
 
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import pellicle as pl
 from pellicle.show import save_figure
-from pellicle.show.figure_style import NO_CONTACT, OKABE_ITO, add_colour_bar
+from pellicle.show.figure_style import NO_CONTACT, OKABE_ITO
 
 POINTS, SIZE = 512, 200e-6
 RUN = {
@@ -60,7 +60,8 @@ def main() -> None:
         left.axhline(x[POINTS // 2], color="black", linewidth=0.6, linestyle=(0, (6, 4)))
         left.set(xlim=(-60, 60), ylim=(-60, 60))
         left.set(xlabel="x [µm]", ylabel="y [µm]", title="contact pressure")
-        add_colour_bar(left, image, "pressure [kPa]")
+        beside = left.inset_axes((1.04, 0.0, 0.05, 1.0))
+        figure.colorbar(image, cax=beside, label="pressure [kPa]")
         low, high = surface.min() - 5, surface.max() + 8
         right.fill_between(x, np.minimum(indenter, high), high, color="0.35", linewidth=0)
         right.fill_between(x, surface, low, color="#BFE3F5", linewidth=0)

@@ -18,8 +18,8 @@ from pellicle.arrays import Array
 from pellicle_axisymmetric import layer_curves, reciprocity
 from pellicle_axisymmetric.equation import influence
 from pellicle_axisymmetric.layer_curves import Shape
-from pellicle_axisymmetric.panels import gauss, graded
-from pellicle_axisymmetric.product_integration import clustering, collocation
+from pellicle_axisymmetric.panels import gauss, graded_panels
+from pellicle_axisymmetric.product_integration import collocation, kernel_substitution
 
 SHAPES: tuple[Shape, ...] = ("smooth", "pointed", "punch")
 _ORDER, _FINEST = 12, 1e-3
@@ -32,8 +32,8 @@ _STEP = 2.0**-24
 
 def punch(ratio: float) -> tuple[float, Array]:
     """Return log(k/2E*a) and φ sin η / k at the nodes η of the table, at s/a = ratio > 0."""
-    panels = graded(_ORDER, _FINEST * np.sqrt(min(1.0, ratio)), 1.0)
-    matrix = collocation(panels, influence(ratio, 0), clustering(ratio), 1)
+    panels = graded_panels(_ORDER, _FINEST * np.sqrt(min(1.0, ratio)), 1.0)
+    matrix = collocation(panels, influence(ratio, 0), kernel_substitution(ratio), 1)
     values = np.linalg.solve(matrix, np.ones(len(matrix))).reshape(len(panels), _ORDER)
     _, unit, to_legendre = gauss(_ORDER)
     angles, found, integral = reciprocity.ANGLES, np.empty(reciprocity.ANGLES.size), 0.0

@@ -23,8 +23,8 @@ from pellicle import kernel
 from pellicle.arrays import Array
 from pellicle_axisymmetric.equation import LEVELS, influence
 from pellicle_axisymmetric.layer_curves import Shape
-from pellicle_axisymmetric.panels import Panel, Points, gauss, graded, joined, points_at
-from pellicle_axisymmetric.product_integration import clustering, collocation, weights
+from pellicle_axisymmetric.panels import Panel, Points, all_points, gauss, graded_panels, points_at
+from pellicle_axisymmetric.product_integration import collocation, kernel_substitution, weights
 from pellicle_axisymmetric.tension_kernel import primitive
 
 _ENDS = np.concatenate([[0.0], np.geomspace(1e-5, 0.5, 12), np.arange(1.0, 15.0)])
@@ -64,9 +64,11 @@ def half_space(shape: Shape, ratio: float, level: int = 0) -> HalfSpace:
     order, finest = LEVELS[level]
     edge = min(1.0, ratio) if ratio else 1.0
     pointed = shape == "pointed"
-    coarse = graded(order, finest * np.sqrt(edge), finest * edge if pointed and ratio else 1.0)
+    coarse = graded_panels(
+        order, finest * np.sqrt(edge), finest * edge if pointed and ratio else 1.0
+    )
     panels = [part for panel in coarse for part in _split(panel, 1 / _PANELS)]
-    nodes = joined(panels)
+    nodes = all_points(panels)
     power = {"smooth": 1, "pointed": -1 if ratio else 0, "punch": 0}[shape]
     halves = np.repeat([panel.length / 2 for panel in panels], order)
     measure = halves * np.tile(gauss(order)[1], len(panels)) * nodes.t ** float(power)
@@ -77,7 +79,7 @@ def half_space(shape: Shape, ratio: float, level: int = 0) -> HalfSpace:
     def depth(distance: Array, source: Points, _target: Points) -> Array:
         return 2 * source.t**power * primitive(distance / ratio)
 
-    cluster, parity = clustering(ratio), 1 if shape == "punch" else -1
+    cluster, parity = kernel_substitution(ratio), 1 if shape == "punch" else -1
     origin = points_at(np.zeros(1))
     reach = np.concatenate([weights(panel, origin, depth, power=cluster)[0] for panel in panels])
     matrix = collocation(panels, influence(ratio, power), cluster, parity)
@@ -127,8 +129,8 @@ def _split(panel: Panel, longest: float) -> list[Panel]:
         return [panel]
     length = panel.length / count
     offset = length * (gauss(panel.nodes.psi.size)[0] + 1) / 2
-    starts = [panel.start.moved(np.asarray(index * length)) for index in range(count)]
+    starts = [panel.start.shift(np.asarray(index * length)) for index in range(count)]
     return [
-        Panel(start, start.moved(np.asarray(length)), length, start.moved(offset))
+        Panel(start, start.shift(np.asarray(length)), length, start.shift(offset))
         for start in starts
     ]

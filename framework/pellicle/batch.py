@@ -10,9 +10,9 @@ from typing import Any, TypeVar
 
 from pellicle.checks import component_name, errors_attributed_to
 from pellicle.components import AnyTask, Executor, Outcome, Say
-from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.errors import ConfigError, PluginError, excerpt
 from pellicle.runs.lock import LockedError as LockedError
-from pellicle.runs.lock import locked as locked
+from pellicle.runs.lock import lock_files as lock_files
 from pellicle.runs.progress import BatchProgress as BatchProgress
 from pellicle.runs.progress import status_line as status_line
 
@@ -37,14 +37,14 @@ class Part:
         match = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text)
         if match and 1 <= int(match[1]) <= int(match[2]):
             return cls(int(match[1]), int(match[2]))
-        raise ConfigError(f"{shown(text)} is neither any nor a part such as 3/40", "part")
+        raise ConfigError(f"{excerpt(text)} is neither any nor a part such as 3/40", "part")
 
     def of(self, tasks: Sequence[_Any]) -> Sequence[_Any]:
         """Return the tasks of this part."""
         return tasks[self.number - 1 :: self.count]
 
 
-def mapped(
+def run_tasks(
     executor: Executor,
     work: Callable[[AnyTask, Say], Outcome],
     tasks: Sequence[AnyTask],
@@ -70,7 +70,9 @@ def mapped(
     with errors_attributed_to(executor):
         pairs: Any = executor.map(work, tasks, progress.report)
     if not hasattr(pairs, "close"):
-        raise PluginError(f"{name}: map() returned {shown(pairs)}; it has to be written with yield")
+        raise PluginError(
+            f"{name}: map() returned {excerpt(pairs)}; it has to be written with yield"
+        )
     with closing(pairs):
         while True:
             with errors_attributed_to(executor):
@@ -80,12 +82,12 @@ def mapped(
                 task, outcome = pair
             if remaining.pop(id(task), None) is None:
                 raise PluginError(
-                    f"{name}: map() yields {shown(task)}; it has to yield each of the tasks that "
+                    f"{name}: map() yields {excerpt(task)}; it has to yield each of the tasks that "
                     "it was given once, the object itself"
                 )
             if not isinstance(outcome, (kind, Exception)):
                 raise PluginError(
-                    f"{name}: map() yields {task.name} with {shown(outcome)}; it has to yield it "
+                    f"{name}: map() yields {task.name} with {excerpt(outcome)}; it has to yield it "
                     "with what its work returned or raised"
                 )
             progress.finished(task, *keep(task, outcome))

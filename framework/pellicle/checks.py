@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arrays import Array, Dataset
-from .errors import ConfigError, PellicleError, PluginError, shown
+from .errors import ConfigError, PellicleError, PluginError, excerpt
 
 
 def component_name(component: object) -> str:
@@ -97,7 +97,7 @@ def _description(value: object) -> str:
     if isinstance(value, np.ndarray):
         kind = "a masked array" if isinstance(value, np.ma.MaskedArray) else "an array"
         return f"{kind} of {value.dtype} of shape {value.shape}"
-    return shown(value)
+    return excerpt(value)
 
 
 def whole_number(value: object, unit: str) -> int:
@@ -106,7 +106,9 @@ def whole_number(value: object, unit: str) -> int:
         value.item() if isinstance(value, np.generic | np.ndarray) and value.ndim == 0 else value
     )
     if not isinstance(number, int) or isinstance(number, bool) or not 1 <= number <= 10**9:
-        raise ValueError(f"{shown(value)} is not allowed; give a whole number of {unit}, 1 to 10⁹")
+        raise ValueError(
+            f"{excerpt(value)} is not allowed; give a whole number of {unit}, 1 to 10⁹"
+        )
     return number
 
 

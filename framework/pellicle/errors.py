@@ -10,7 +10,7 @@ _TOLD, _PATH = 10, 200
 """Problems that a message tells, and letters of the path of a field."""
 
 
-def shown(value: object) -> str:
+def excerpt(value: object) -> str:
     """Return ``value`` as text for a message, at most 60 characters long."""
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}…"

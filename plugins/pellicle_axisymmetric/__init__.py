@@ -11,10 +11,10 @@ from .adhesive_contact import punch_pull_off as punch_pull_off
 from .arguments import positive as positive
 from .arguments import single as single
 from .body import BodyOfRevolution as BodyOfRevolution
+from .depth_curves import contact_part as contact_part
+from .depth_curves import fill_curve as fill_curve
 from .depth_curves import force_curve as force_curve
-from .depth_curves import spread as spread
-from .depth_curves import stretched as stretched
-from .depth_curves import touching as touching
+from .depth_curves import stretch_curve as stretch_curve
 from .dynamic_punch import dynamic_punch_stiffness as dynamic_punch_stiffness
 from .equation import kinks_of as kinks_of
 from .indentation import AxisymmetricContact as AxisymmetricContact

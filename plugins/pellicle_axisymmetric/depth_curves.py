@@ -37,17 +37,17 @@ LEAST_DEPTH = 1e-60
 
 def force_curve(body: HasAbelSlope, depth: Array, length: float) -> ForceCurve:
     """Return P/E* and its derivatives at depths [m], of shape (n,), for s = ``length`` [m]."""
-    touches, d = touching(depth)
+    touches, d = contact_part(depth)
     curve = _curve(body, length, _last(body, float(d.max(initial=LEAST_DEPTH))))
     x = np.log(d)
     inside = np.clip(x, curve.t[0], curve.t[-1])
     log_force, log_stiffness, by_length = curve(inside).T
     power = np.exp(log_stiffness + inside - log_force)
     force = np.exp(log_force + power * (x - inside))
-    return spread(touches, force, force * power / d, force * by_length)
+    return fill_curve(touches, force, force * power / d, force * by_length)
 
 
-def stretched(
+def stretch_curve(
     body: HasAbelSlope, width: float, height: float, depth: Array, length: float
 ) -> ForceCurve:
     """Return P/E* of a body stretched by ``width`` along radii and by ``height`` along the axis.
@@ -58,13 +58,13 @@ def stretched(
     return ForceCurve(width * height * force, width * by_depth, height * by_length)
 
 
-def touching(depth: Array) -> tuple[Mask, Array]:
+def contact_part(depth: Array) -> tuple[Mask, Array]:
     """Return where there is contact, and the depths there."""
     touches = depth > 0
     return touches, np.maximum(depth[touches], LEAST_DEPTH)
 
 
-def spread(touches: Mask, *values: Array) -> ForceCurve:
+def fill_curve(touches: Mask, *values: Array) -> ForceCurve:
     """Return values known in contact as a curve that is 0 elsewhere."""
     out = np.zeros((3, touches.size))
     out[:, touches] = values

@@ -21,10 +21,10 @@ import numpy as np
 
 from pellicle.arrays import Array
 from pellicle.components import HasAbelSlope
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, excerpt
 
-from .panels import Panel, Points, graded, joined, points_at
-from .product_integration import IntegralKernel, clustering, collocation, weights
+from .panels import Panel, Points, all_points, graded_panels, points_at
+from .product_integration import IntegralKernel, collocation, kernel_substitution, weights
 from .tension_kernel import auxiliary_g, primitive
 
 LEVELS = ((12, 1e-3), (16, 3e-4), (22, 1e-4))
@@ -56,7 +56,7 @@ class PanelSolution:
             reach = primitive(distance / self.ratio) if self.ratio else np.pi / 2
             return 2 * source.t**self.power * reach
 
-        cluster = clustering(self.ratio)
+        cluster = kernel_substitution(self.ratio)
         force = delta = 0.0
         for panel, y in zip(self.panels, self.y, strict=True):
             force += float(weights(panel, origin, load)[0] @ y)
@@ -88,14 +88,16 @@ def solve(indenter: HasAbelSlope, a: float, ratio: float, level: int) -> PanelSo
     power = corner if indenter.pointed else 1
     # At the edge 1 − t ≈ η²/2, so that a layer s/a wide in t is √(2s/a) wide in η.
     layer = min(1.0, ratio) if ratio else 1.0
-    panels = graded(order, finest * np.sqrt(layer), finest * layer if indenter.pointed else 1.0)
-    nodes = joined(panels)
+    panels = graded_panels(
+        order, finest * np.sqrt(layer), finest * layer if indenter.pointed else 1.0
+    )
+    nodes = all_points(panels)
     slope = indenter.abel_slope(a * nodes.t)
     if not ratio:
         # K is then π times the delta function, so that χ = E* h'/π; and dt = sin η dψ.
         y: Array = slope / np.pi * np.sin(nodes.eta) / nodes.t**power
     else:
-        matrix = collocation(panels, influence(ratio, power), clustering(ratio), parity=-1)
+        matrix = collocation(panels, influence(ratio, power), kernel_substitution(ratio), parity=-1)
         y = np.asarray(np.linalg.solve(matrix, slope), dtype=np.float64)
     return PanelSolution(panels, y.reshape(len(panels), order), power, ratio)
 
@@ -129,5 +131,5 @@ def without_kinks(indenter: HasAbelSlope) -> None:
     """Raise a ConfigError if a profile has kinks, which the panels do not resolve."""
     if kinks := kinks_of(indenter):
         raise ConfigError(
-            f"has an edge at {shown(kinks[0])} m; only its force_curve is known", "indenter"
+            f"has an edge at {excerpt(kinks[0])} m; only its force_curve is known", "indenter"
         )

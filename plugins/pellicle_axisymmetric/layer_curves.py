@@ -26,7 +26,7 @@ from pellicle.arrays import Array
 from pellicle.components import ForceCurve, LayerForceCurve
 
 from . import master_curves
-from .depth_curves import touching
+from .depth_curves import contact_part
 from .splines import Interpolant, stretched_spline, table_in
 
 if TYPE_CHECKING:
@@ -96,8 +96,8 @@ class Profile:
     def curve(self, depth: Array, layer: TensedLayer) -> LayerForceCurve:
         """Return P/E* and its derivatives at depths [m] of shape (n,), 0 without contact."""
         change, rates, last = _splines(self, layer)
-        touches, d = touching(depth)
-        x, x_rate = self.stretched(d, layer.thickness)
+        touches, d = contact_part(depth)
+        x, x_rate = self.stretch(d, layer.thickness)
         inside = np.minimum(x, last)
         slope = change(inside, 1)
         factor = np.exp(change(inside) + slope * (x - inside))
@@ -113,7 +113,7 @@ class Profile:
         )
         return LayerForceCurve(*out)
 
-    def stretched(self, depth: Array, thickness: float) -> tuple[Array, Array]:
+    def stretch(self, depth: Array, thickness: float) -> tuple[Array, Array]:
         """Return the variable x in which a change of log P is smooth, and dx/dδ."""
         unit = self.scale * (CONFINEMENT_SCALE * thickness) ** (1 / self.exponent)
         power = (depth / unit) ** self.exponent
@@ -308,7 +308,7 @@ def _splines(profile: Profile, layer: TensedLayer) -> tuple[BSpline, BSpline, fl
     from scipy.interpolate import make_interp_spline
 
     nodes = _nodes(profile, layer, _radii(profile.limit, layer.thickness))
-    x, x_rate = profile.stretched(nodes.depth, layer.thickness)
+    x, x_rate = profile.stretch(nodes.depth, layer.thickness)
     half_space = profile.half_space(nodes.depth, layer.length)
 
     def spline(values: Array) -> BSpline:

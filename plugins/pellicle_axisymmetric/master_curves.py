@@ -21,7 +21,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.components import ContactRadius, ForceCurve
 
-from .depth_curves import spread, touching
+from .depth_curves import contact_part, fill_curve
 from .reciprocity import contacts, punch_slope, punch_stiffness
 from .splines import Interpolant, stretched_spline
 
@@ -57,31 +57,31 @@ def _one_variable(exponent: int) -> Interpolant:
 
 def paraboloid(radius: float, depth: Array, length: float) -> ForceCurve:
     """Return P/E* under a paraboloid of R = ``radius`` [m] at s = ``length`` [m]."""
-    touches, d = touching(depth)
+    touches, d = contact_part(depth)
     root = np.sqrt(d * radius)
     x = _ratio(length, root)
     log, rate = _one_variable(2)(x)
     force = 4 / 3 * np.sqrt(radius) * d**1.5 * np.exp(log)
-    return spread(touches, force, force / d * (1.5 - rate * x / 2), force * rate / root)
+    return fill_curve(touches, force, force / d * (1.5 - rate * x / 2), force * rate / root)
 
 
 def cone(half_angle: float, depth: Array, length: float) -> ForceCurve:
     """Return P/E* under a cone of α = ``half_angle`` [rad] at s = ``length`` [m]."""
-    touches, d = touching(depth)
+    touches, d = contact_part(depth)
     radius = 2 / np.pi * np.tan(half_angle) * d
     x = _ratio(length, radius)
     log, rate = _one_variable(1)(x)
     force = radius * d * np.exp(log)
-    return spread(touches, force, force / d * (2 - rate * x), force * rate / radius)
+    return fill_curve(touches, force, force / d * (2 - rate * x), force * rate / radius)
 
 
 def flat_punch(radius: float, depth: Array, length: float) -> ForceCurve:
     """Return P/E* under a flat punch of a = ``radius`` [m] at s = ``length`` [m]."""
-    touches, d = touching(depth)
+    touches, d = contact_part(depth)
     log, rate = punch_stiffness(np.array([length / radius]))
     stiffness = 2 * radius * np.exp(log)
     force = stiffness * d
-    return spread(touches, force, np.full_like(d, stiffness[0]), force * rate / radius)
+    return fill_curve(touches, force, np.full_like(d, stiffness[0]), force * rate / radius)
 
 
 def punch_radius(stiffness: Array, length: float | Array) -> ContactRadius:

@@ -29,7 +29,7 @@ class Points:
         """Position in units of the contact radius."""
         return np.sin(self.psi)
 
-    def moved(self, offset: Array) -> Points:
+    def shift(self, offset: Array) -> Points:
         """Return the points with ψ increased by an offset of broadcastable shape."""
         return Points(self.psi + offset, self.eta - offset)
 
@@ -77,7 +77,7 @@ def gauss(order: int) -> tuple[Array, Array, Array]:
     return nodes, weights, to_legendre * (degrees[:, None] + 0.5)
 
 
-def graded(order: int, edge: float, centre: float) -> list[Panel]:
+def graded_panels(order: int, edge: float, centre: float) -> list[Panel]:
     """Return panels of ``order`` Gauss points over [0, π/2], from the axis to the edge.
 
     Each is half as long as its neighbour, down to ``centre`` and ``edge`` in ψ at either end.
@@ -101,7 +101,7 @@ def graded(order: int, edge: float, centre: float) -> list[Panel]:
     return panels
 
 
-def joined(panels: list[Panel]) -> Points:
+def all_points(panels: list[Panel]) -> Points:
     """Return the Gauss points of all panels, shape (n,)."""
     return Points(
         np.concatenate([panel.nodes.psi for panel in panels]),

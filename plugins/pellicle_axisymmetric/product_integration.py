@@ -10,13 +10,13 @@ from numpy.polynomial.legendre import leggauss, legvander
 
 from pellicle.arrays import Array
 
-from .panels import Panel, Points, gauss, joined
+from .panels import Panel, Points, all_points, gauss
 
 IntegralKernel = Callable[[Array, Points, Points], Array]
 
 
 @lru_cache(maxsize=16)
-def clustered(power: int) -> tuple[Array, Array]:
+def end_point_rule(power: int) -> tuple[Array, Array]:
     """Return a rule on (0, 1) for integrands singular at, or close to, 0.
 
     The substitution ξ = u^power also resolves a scale of about 10^(−power) in ξ.
@@ -26,7 +26,7 @@ def clustered(power: int) -> tuple[Array, Array]:
     return u**power, unit / 2 * power * u ** (power - 1)
 
 
-def clustering(ratio: float) -> int:
+def kernel_substitution(ratio: float) -> int:
     """Return the substitution that resolves a kernel of scale s/a = ratio in a panel."""
     return max(6, int(np.ceil(-2 * np.log10(ratio)))) if ratio else 6
 
@@ -49,8 +49,8 @@ def weights(
     """Return the weights of ∫ y(ψ) kernel(|t − x|, t, x) dψ over one panel, shape (m, order).
 
     They are those of y at the Gauss points of the panel, for targets x of shape (m,). The kernel is
-    smooth except at t = x, where ``power`` is that of the substitution, see ``clustered``. With
-    ``above`` the integral is over t > x only.
+    smooth except at t = x, where ``power`` is that of the substitution, see ``end_point_rule``.
+    With ``above`` the integral is over t > x only.
     """
     order = panel.nodes.psi.size
     rule = gauss(order)
@@ -68,7 +68,7 @@ def weights(
         values = kernel(_chord(targeted, panel.nodes, separation), panel.nodes, targeted)
         out[far] = values * rule[1] * length / 2
 
-    xi, unit = clustered(power)
+    xi, unit = end_point_rule(power)
     for side, distance, opposite, end in (
         (1.0, ahead, behind, panel.start),
         (-1.0, behind, ahead, panel.end),
@@ -84,7 +84,7 @@ def weights(
         nearest = Points(
             np.where(inside, targeted.psi, end.psi), np.where(inside, targeted.eta, end.eta)
         )
-        source = nearest.moved(side * span * xi)
+        source = nearest.shift(side * span * xi)
         values = kernel(_chord(targeted, source, offset), source, targeted)
         local = side * (1 - 2 * (distance[pick][:, None] - offset) / length)
         basis = legvander(local, order - 1) @ rule[2]
@@ -97,7 +97,7 @@ def collocation(panels: list[Panel], kernel: IntegralKernel, power: int, parity:
 
     ``parity`` is 1 if the unknown is even, −1 if it is odd.
     """
-    nodes = joined(panels)
+    nodes = all_points(panels)
     blocks = []
     for panel in panels:
         mirror = weights(panel.mirrored(), nodes, kernel, power=power)[:, ::-1]

@@ -61,7 +61,7 @@ _OTHER = _Rule(1.0)
 _AREA = _Rule(1.0, 1.5, 0.7)
 
 
-class Expected(NamedTuple):
+class Expectation(NamedTuple):
     """Force, contact and errors to expect of a load step."""
 
     step: int
@@ -87,7 +87,7 @@ class Expected(NamedTuple):
 class Advice(NamedTuple):
     """The expected errors of a run, and a grid that meets an allowed one."""
 
-    steps: tuple[Expected, ...]
+    steps: tuple[Expectation, ...]
     points: tuple[int, int]
     """Cells, on a domain of `size` if there is one, that bring the error of force and depth to the
     allowed one in every step with contact."""
@@ -181,7 +181,7 @@ def size_for(run: Run, at_edge: Sequence[int]) -> tuple[float, float]:
 
 def _expected(
     run: Run, grids: Sequence[Grid], results: Sequence[xr.Dataset], *, smooth: bool
-) -> tuple[Expected, ...]:
+) -> tuple[Expectation, ...]:
     """Return force, contact and errors of each step, from results on three coarser grids.
 
     A difference to the finest of them, the last, is extrapolated to the cells of the run. Small
@@ -224,7 +224,7 @@ def _expected(
         strict=True,
     )
     return tuple(
-        Expected(number, newtons, width / run.grid.cell_size, *of_step)
+        Expectation(number, newtons, width / run.grid.cell_size, *of_step)
         for number, (newtons, width, *of_step) in enumerate(columns, 1)
     )
 

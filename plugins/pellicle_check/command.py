@@ -26,7 +26,7 @@ def check(
 ) -> None:
     """Check a run or a study, and estimate its errors and memory from coarser grids."""
     from pellicle import Study
-    from pellicle.studies import from_toml, planned, warn_of_scale
+    from pellicle.studies import from_toml, plan_runs, warn_of_scale
     from pellicle_check import words
     from pellicle_check.advice import advise
 
@@ -35,13 +35,13 @@ def check(
     is_study = isinstance(configuration, Study)
     warn_of_scale(configuration)
     checked = []
-    for task in planned(configuration, Path(file.stem)):
+    for task in plan_runs(configuration, Path(file.stem)):
         name = task.name if is_study else ""
         try:
             advice = advise(task.run, allowed)
         except ConfigError as problem:
             raise ConfigError(f"{problem} (run with {name})") if name else problem from None
-        checked.append(words.Advised(name, task.run, advice, task.memory))
+        checked.append(words.RunAdvice(name, task.run, advice, task.memory))
     if json:
         runs = [
             ({"run": name} if is_study else {})

@@ -19,7 +19,7 @@ _ROUND_OFF = 1e-9
 """Relative error below which a quantity counts as prescribed."""
 
 
-class Advised(NamedTuple):
+class RunAdvice(NamedTuple):
     """A run with its advice."""
 
     name: str
@@ -30,7 +30,7 @@ class Advised(NamedTuple):
     """Memory that it needs [bytes]."""
 
 
-def errors_of_run(advised: Advised) -> Table:
+def errors_of_run(advised: RunAdvice) -> Table:
     """Return the expected errors of each step."""
     quantities = _erring(advised.advice)
     rows = [
@@ -47,7 +47,7 @@ def errors_of_run(advised: Advised) -> Table:
     return Table.of_rows(("step", "force", "cells across", *errors), rows)
 
 
-def advice_on_run(advised: Advised, allowed: float) -> Iterator[str]:
+def advice_on_run(advised: RunAdvice, allowed: float) -> Iterator[str]:
     """Yield what a run needs, and a grid that keeps its errors below what is ``allowed``."""
     _, run, advice, needed = advised
     nx, ny = run.grid.points
@@ -62,7 +62,7 @@ def advice_on_run(advised: Advised, allowed: float) -> Iterator[str]:
     yield from _of_waves([advised])
 
 
-def errors_of_runs(advised: Sequence[Advised], allowed: float) -> Table:
+def errors_of_runs(advised: Sequence[RunAdvice], allowed: float) -> Table:
     """Return the worst of each run of a study."""
     rows = []
     for name, _, advice, needed in advised:
@@ -77,7 +77,7 @@ def errors_of_runs(advised: Sequence[Advised], allowed: float) -> Table:
     return Table.of_rows(heads, rows)
 
 
-def advice_on_runs(advised: Sequence[Advised], allowed: float) -> Iterator[str]:
+def advice_on_runs(advised: Sequence[RunAdvice], allowed: float) -> Iterator[str]:
     """Yield how many runs exceed the allowed error, and which are the worst."""
     errors = [(w, run.name) for run in advised if (w := _worst(run.advice, "error")) == w]
     areas = [(w, run.name) for run in advised if (w := _worst(run.advice, "area_error")) == w]
@@ -97,7 +97,7 @@ def advice_on_runs(advised: Sequence[Advised], allowed: float) -> Iterator[str]:
         )
 
 
-def contacts_at_edge(advised: Sequence[Advised]) -> Iterator[str]:
+def contacts_at_edge(advised: Sequence[RunAdvice]) -> Iterator[str]:
     """Yield which steps reach the edge of the domain, and a domain that holds all; or nothing."""
     reaching = [entry for entry in advised if entry.advice.at_edge]
     for name, run, advice, _ in reaching:
@@ -108,7 +108,7 @@ def contacts_at_edge(advised: Sequence[Advised]) -> Iterator[str]:
         yield f"{_domain(reaching)} holds every step; the errors are for such a domain"
 
 
-def _of_waves(advised: Sequence[Advised]) -> Iterator[str]:
+def _of_waves(advised: Sequence[RunAdvice]) -> Iterator[str]:
     cells = min(entry.advice.cells_in_wave or math.inf for entry in advised)
     if cells < _IN_WAVE * (1 - 1e-9):
         yield (
@@ -122,7 +122,7 @@ def _erring(advice: Advice) -> list[str]:
     return [name for name in ("force", "depth") if _worst(advice, f"{name}_error") > _ROUND_OFF]
 
 
-def _domain(advised: Sequence[Advised]) -> str:
+def _domain(advised: Sequence[RunAdvice]) -> str:
     """Return the setting of a domain that holds the contacts of several runs."""
     x, y = (max(entry.advice.size[n] for entry in advised if entry.advice.size) for n in (0, 1))
     return f'grid.size = ["{readable(x, "m", 3)}", "{readable(y, "m", 3)}"]'

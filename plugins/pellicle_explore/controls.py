@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import pellicle as pl
-from pellicle.schema import replaced, walk
+from pellicle.schema import replace_at, walk
 from pellicle.units import Quantity, quantity_of
 
 
@@ -66,10 +66,10 @@ def configuration_of(run: pl.Run) -> dict[str, Any]:
     loading = run.indentation.loading
     if loading.samples:
         return data
-    return dict(replaced(data, f"loading.{loading.prescribed}", list(loading.values)))
+    return dict(replace_at(data, f"loading.{loading.prescribed}", list(loading.values)))
 
 
-def changed(
+def change_control(
     configuration: Mapping[str, Any], control: Control, text: str
 ) -> tuple[dict[str, Any], float]:
     """Return a configuration with a new value of a control, given as text, and the value in SI.
@@ -89,6 +89,6 @@ def changed(
             )
         steps = configuration["loading"][key]
         value = [step * number / max(map(abs, steps)) for step in steps]
-    data = dict(replaced(configuration, control.path, value))
+    data = dict(replace_at(configuration, control.path, value))
     pl.Run.from_mapping(data)
     return data, number

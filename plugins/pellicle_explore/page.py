@@ -16,7 +16,7 @@ import pellicle as pl
 from pellicle.errors import PellicleError
 from pellicle.units import readable
 
-from .controls import Control, changed, configuration_of, controls
+from .controls import Control, change_control, configuration_of, controls
 from .plots import Plots
 from .solving import Frame, Solving
 
@@ -104,7 +104,7 @@ class Explorer:
 
     def _change(self, control: Control, text: str) -> float:
         """Take a new value of a control; return it in SI, or raise a ValueError."""
-        self._configuration, value = changed(self._configuration, control, text)
+        self._configuration, value = change_control(self._configuration, control, text)
         self._solving.request(self._configuration)
         return value
 

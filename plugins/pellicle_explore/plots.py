@@ -44,7 +44,7 @@ class Plots:
 
     def draw(self, frame: Frame) -> None:
         """Draw the load steps of a run, and a cut along x at the largest force."""
-        cut, line = frame.cut, frame.line
+        cut, line = frame.section, frame.line
         x, surface, gap = cut["x"].values, -cut["displacement"].values, cut["gap"].values
         pressure = line["pressure"].values
         indenter = surface + np.maximum(np.where(np.isfinite(gap), gap, np.nan), 0.0)

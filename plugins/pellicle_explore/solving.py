@@ -33,7 +33,7 @@ class Frame(NamedTuple):
     """The load steps, of dimensions (step, x, y)."""
     largest: xr.Dataset
     """The load step with the largest force, of dimensions (x, y)."""
-    cut: xr.Dataset
+    section: xr.Dataset
     """A cut through its deepest point, along x."""
     line: xr.Dataset
     """The pressure along the cut, up to the rim of contact."""
@@ -52,7 +52,7 @@ class Frame(NamedTuple):
         return f"{words}; lowest force {readable(lowest, 'N', 4)}" if lowest < 0 else words
 
 
-def solved(
+def solve_frame(
     configuration: Mapping[str, Any], progress: bool | Callable[[int, int, float], None] = False
 ) -> Frame:
     """Return the frame of a run; ``progress`` and exceptions are those of `pellicle.run`."""
@@ -102,7 +102,7 @@ class Solving:
 
         outcome: Frame | Exception
         try:
-            outcome = solved(configuration, check)
+            outcome = solve_frame(configuration, check)
         except Exception as error:
             # A plugin may raise anything, and the page has to go on.
             outcome = error

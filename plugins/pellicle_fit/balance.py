@@ -19,7 +19,7 @@ _STEPS, _SECANTS = 80, 8
 """Most steps of a search for a balance, and those by secants; then slopes are sought."""
 
 
-def balanced(
+def balance_depths(
     pushed: Callable[[Array], Array], give: Callable[[Array], Array], base: Array, start: Array
 ) -> tuple[Array, Array]:
     """Return the depth δ [m] at which δ + u(P(δ)) is that of the base, and P, of shape (k, n).

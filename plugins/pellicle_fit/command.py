@@ -107,11 +107,11 @@ def fit(
     from pellicle.errors import ConfigError
 
     from .config import FitConfig
+    from .displays import StoredFit, exit_by_fits
     from .population.fits import ManyFits
     from .print_fits import print_fit, print_fits
     from .report.figures import save_figure
     from .report.page import save_report
-    from .stored import StoredFit, exit_by_fits
 
     curves = [*(files or ())]
     is_first = bool(curves) and curves[0].suffix.lower() in (".toml", ".json")
@@ -153,7 +153,7 @@ def fit(
 @pl.hookimpl
 def register_commands(register: pl.RegisterCommand) -> None:
     """Register the command."""
-    written = "pellicle_fit.stored:stored"
+    written = "pellicle_fit.displays:file_display"
     register(fit, file="pellicle_fit.config:FitConfig", written=written)
 
 

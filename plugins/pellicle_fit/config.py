@@ -28,19 +28,19 @@ from pellicle.schema import (
     overridden,
     paths_relative_to,
     read_toml,
-    replaced,
+    replace_at,
 )
 from pellicle.units import PoissonsRatio, Quantity
 
 from .config_input import (
     as_list,
     component_table,
-    described,
-    effects_or_none,
+    config_of_record,
+    describe_indenter,
+    effect_list,
     fields_of,
     indenter_or_table,
     list_or_entry,
-    recorded,
     share_of,
     with_radius,
 )
@@ -48,7 +48,7 @@ from .effect import Effect, Fitted, Solid, quantities
 from .files.columns import Calibration
 from .files.measurement import Segment
 from .files.missing import OPTIONS, MissingInputError
-from .files.sources import PLACE, Curves, Source, expanded, gather
+from .files.sources import PLACE, Curves, Source, expand_pattern, gather
 from .population.judgement import Rule
 from .simulated.bead import constants_of
 from .simulated.simulation import GRID_POINTS
@@ -88,7 +88,7 @@ class FitConfig(FromFile, Calibration):
     indenter: Annotated[
         Indenter | HasForceCurve | dict[str, Any],
         PlainValidator(indenter_or_table, json_schema_input_type=dict[str, Any] | str),
-        PlainSerializer(described),
+        PlainSerializer(describe_indenter),
     ] = Field(description="the indenter: its type and fields")
     poissons_ratio: PoissonsRatio | None = Field(
         None, description="of the solid, to get Young's modulus as well, or if the kernel needs it"
@@ -109,7 +109,7 @@ class FitConfig(FromFile, Calibration):
         description="modulus and tension of an indenter that yields too: youngs_modulus, or "
         "reduced_modulus, poissons_ratio if it is not that of the solid, tension",
     )
-    model: Annotated[tuple[_OneEffect, ...], effects_or_none(_Effects)] = Field(
+    model: Annotated[tuple[_OneEffect, ...], effect_list(_Effects)] = Field(
         ("tension",),
         description="effects that the force has; whether the first is needed is the question. "
         "Without any, whether a curve shows more than an elastic half-space",
@@ -117,7 +117,7 @@ class FitConfig(FromFile, Calibration):
     )
     rivals: Annotated[
         tuple[Annotated[tuple[_OneEffect, ...], BeforeValidator(as_list)], ...],
-        effects_or_none(list[str | dict[str, Any] | _Effects]),
+        effect_list(list[str | dict[str, Any] | _Effects]),
     ] = Field(
         DEFAULT_RIVALS,
         description="effects, or lists of effects that act together, that are compared with "
@@ -264,12 +264,12 @@ class FitConfig(FromFile, Calibration):
         """
         options = {name: value for name, value in options.items() if value is not None}
         if isinstance(base, (str, Path)) and Path(base).suffix.lower() == ".json":
-            base = recorded(Path(base))
+            base = config_of_record(Path(base))
         if isinstance(base, (str, Path)):
             folder, data = Path(base).parent, read_toml(Path(base))
             if "curves" in data.keys() - options.keys():
                 paths = map(str, as_list(data["curves"]))
-                data["curves"] = [file for path in paths for file in expanded(path, folder)]
+                data["curves"] = [file for path in paths for file in expand_pattern(path, folder)]
             with paths_relative_to(folder):
                 return cls.merged(data, overrides, **options)
         if isinstance(base, FitConfig):
@@ -284,12 +284,12 @@ class FitConfig(FromFile, Calibration):
             data["indenter"] = with_radius(data["indenter"])
         for name, value in with_radius(options).items():
             if isinstance(value, (list, tuple)):
-                data = replaced(data, f"per_file.{name}", value)
+                data = replace_at(data, f"per_file.{name}", value)
                 continue
             if isinstance(per_file := data.get("per_file"), Mapping):
                 data["per_file"] = {k: v for k, v in per_file.items() if k != name}
             key = name if name in cls.model_fields else f"indenter.{name}"
-            data = replaced(data, key, value)
+            data = replace_at(data, key, value)
         return cls(**overridden(data, overrides))
 
     def to_dict(self) -> dict[str, Any]:
@@ -308,7 +308,7 @@ class FitConfig(FromFile, Calibration):
             others.add(self.group_by.lower())
         for name, value in with_radius(source.fields).items():
             if name not in others:
-                indenter = replaced(indenter, name, value)
+                indenter = replace_at(indenter, name, value)
         if not isinstance(indenter, Mapping):
             return indenter
         lacks = {} if "type" in indenter else {"indenter": "-i sphere"}

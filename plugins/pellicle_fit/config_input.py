@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 
 from pellicle import registry
 from pellicle.components import Component, HasForceCurve, Indenter
-from pellicle.errors import ConfigError, all_problems, shown
+from pellicle.errors import ConfigError, all_problems, excerpt
 from pellicle.units import Quantity
 
 
@@ -31,7 +31,7 @@ def list_or_entry(entries: Any) -> BeforeValidator:
     return BeforeValidator(as_list, json_schema_input_type=entries)
 
 
-def effects_or_none(entries: Any) -> BeforeValidator:
+def effect_list(entries: Any) -> BeforeValidator:
     """Return the annotation of a list of effects, of which "none" is the empty one."""
     return BeforeValidator(
         lambda value: [] if isinstance(value, str) and value == "none" else as_list(value),
@@ -73,7 +73,7 @@ def fields_of(indenter: object) -> Mapping[str, FieldInfo]:
     return getattr(kind, "model_fields", {})
 
 
-def described(indenter: object) -> dict[str, Any]:
+def describe_indenter(indenter: object) -> dict[str, Any]:
     """Return an indenter, or the fields of one, as JSON data."""
     if isinstance(indenter, Component):
         return indenter.model_dump(mode="json", exclude_none=True)
@@ -85,12 +85,12 @@ def share_of(value: object) -> float:
     percent = isinstance(value, str) and value.endswith("%")
     number = Quantity("1", above=0)(str(value)[:-1] if percent else value)
     if (share := number / 100 if percent else number) > 1:
-        text = f"{shown(value)} is a share of {100 * share:.6g} %, beyond 100 %"
+        text = f"{excerpt(value)} is a share of {100 * share:.6g} %, beyond 100 %"
         raise ConfigError(f'{text}; 10 % is 0.1 or "10 %"')
     return share
 
 
-def recorded(path: Path) -> Any:
+def config_of_record(path: Path) -> Any:
     """Return the configuration in the JSON of a fit, of a pool or of many fits of files."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))

@@ -12,7 +12,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.errors import ConvergenceError
 
-from .balance import DIFFERENCE, balanced
+from .balance import DIFFERENCE, balance_depths
 from .contact.contact import Contact, HasModulus
 from .contact.curve import Curve
 from .effect import (
@@ -104,7 +104,7 @@ class Explanation:
                     return excuse
                 if isinstance(effect, Bends):
                     contact = effect.known(sizes).contact(contact)
-            if curve.sines and "tension" in names and not contact.is_own:
+            if curve.sines and "tension" in names and not contact.is_bare:
                 return "what a sine tells under a tension is known of a bare half-space alone"
         return ""
 
@@ -159,10 +159,10 @@ class Explanation:
             return Balance(*map(np.array, zip(*balances, strict=True)))
         of, step = self._forces(curve), DIFFERENCE * curve.contact.deepest
         if of.give is None:
-            depth, force = of.base, of.pushed(of.base)
+            depth, force = of.base, of.true_force(of.base)
         else:
-            depth, force = balanced(of.pushed, of.give, of.base, of.near)
-        rate = (of.pushed(depth + step) - force) / step
+            depth, force = balance_depths(of.true_force, of.give, of.base, of.near)
+        rate = (of.true_force(depth + step) - force) / step
         if of.give is not None:
             way = of.give(force)
             stretch = 1 + (of.give(force + step * rate) - way) / step
@@ -177,8 +177,8 @@ class Explanation:
             return np.array([k.beside(curve, Balance(*(x[i] for x in near))) for i, k in rows])
         of = self._forces(curve)
         if of.give is None:
-            return self.recorded(of.pushed(of.base), curve)
-        force = of.pushed(near.depth)
+            return self.recorded(of.true_force(of.base), curve)
+        force = of.true_force(near.depth)
         left = of.base - near.depth - of.give(force)
         return self.recorded(force + near.rate * left, curve)
 
@@ -216,17 +216,17 @@ class Explanation:
         is_free = curve.stiffness is None and not yields
         balances = is_free or any(effect.balances for effect in responds)
         # The way that the measured forces leave.
-        path = base if balances else base - give(curve.smoothed - self.free_force(curve))
+        path = base if balances else base - give(curve.smooth_force - self.free_force(curve))
         response: Response = contact.force
         for effect in responds:
             response = effect.response(contact, curve, path, softness)
 
-        def pushed(depth: Array) -> Array:
+        def true_force(depth: Array) -> Array:
             beside = (add.force(contact, curve, depth) for add in adds)
             return sum(beside, start=response(depth))
 
         near = np.where(base > 0, np.maximum(path, _LEAST * base), base)
-        return _Forces(base, near, pushed, None if balances else give)
+        return _Forces(base, near, true_force, None if balances else give)
 
 
 def columns_are_rows(explanation: Explanation, curve: Curve) -> bool:
@@ -259,7 +259,7 @@ class _Forces(NamedTuple):
     """Depths of the base [m]."""
     near: Array
     """Depths [m] from which a balance is sought."""
-    pushed: Response
+    true_force: Response
     """True force [N] of each row at its depth [m]."""
     give: Callable[[Array], Array] | None
     """Way [m] of what is in series; None if nothing is, or what responds has it."""

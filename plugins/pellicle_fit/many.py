@@ -18,14 +18,13 @@ import numpy as np
 import pandas as pd
 
 from pellicle import registry, results
-from pellicle.batch import BatchProgress, LockedError, Part, locked, mapped
+from pellicle.batch import BatchProgress, LockedError, Part, lock_files, run_tasks
 from pellicle.components import Component, Executor, HasForceCurve, Indenter, Say
 from pellicle.errors import ConfigError, PellicleError, StorageError
 from pellicle.files import atomic_write, check_writable, is_file
 
-from .alike import alike, beside
 from .config import FitConfig
-from .config_input import described
+from .config_input import describe_indenter
 from .estimation.coordinates import MODULUS
 from .files.measurement import Measurement
 from .files.sources import Source
@@ -37,8 +36,9 @@ from .population.row import Row, as_json, sketch
 from .problem import components_of, problem, record_of
 from .report.paper_table import save_tables
 from .report.population import save_population
+from .representatives import beside, representatives
 from .result import data_of
-from .sealed import read_sealed, write_sealed
+from .sealed_json import read_sealed, write_sealed
 from .selection.calibration import common_errors
 from .words.story import shares
 
@@ -80,7 +80,7 @@ def fit_sources(
     rejected = None if config.rejected is None else Names(config.rejected)
     fits, began = ManyFits([], configuration=config.to_dict()), perf_counter()
     tried, keep = list[tuple[Row, Path | None]](), partial(_keep, writes=part is None)
-    with nullcontext() if directory is None or part else locked(directory, "fits", wait=wait):
+    with nullcontext() if directory is None or part else lock_files(directory, "fits", wait=wait):
         if directory is not None:
             if part is None:
                 check_writable(directory / "fits.h5")
@@ -91,13 +91,17 @@ def fit_sources(
                 made = [_task(config, source, directory, fits, progress) for source in batch]
                 bar.expect(max(len(fits.rows), *(s.total for s in batch)), made.count(None))
                 rows = fits.rows[-len(batch) :]
-                near = [()] * len(batch) if config.every_rival else alike(config, batch, rows)
+                near = (
+                    [()] * len(batch)
+                    if config.every_rival
+                    else representatives(config, batch, rows)
+                )
                 for chosen, fit_one in passes(made, near, rows, part, work):
                     like = {i: beside(rows, near[i]) for i in chosen}
                     tasks = [
                         replace(t, like=like[i]) for i, t in enumerate(made) if t and i in like
                     ]
-                    mapped(config.executor, fit_one, tasks, dict, keep, bar)
+                    run_tasks(config.executor, fit_one, tasks, dict, keep, bar)
                 tried += [(task.row, task.path) for task in made if task]
                 for row in rows:
                     row.pack()
@@ -123,7 +127,7 @@ def _task(
     try:
         indenter = config.indenter_of(source)
     except ConfigError as error:
-        raise source.named(error) from None
+        raise source.with_name(error) from None
     curve = source.curve
     try:
         if isinstance(curve, PellicleError):
@@ -185,7 +189,7 @@ def work(task: FitTask, say: Say) -> dict[str, Any]:
     """Fit a curve in a worker, and return JSON data of the fit, with what a population adds."""
     fit = task.problem.fit(like=task.like)
     selected, (force,) = fit.answer.selected, fit.forces()
-    (curve,) = selected.whole
+    (curve,) = selected.all_rows
     load = force - selected.known[0].free_force(curve)
     measured, position = curve.force, curve.position
     scatter = measured - np.mean(measured)
@@ -212,7 +216,13 @@ def _identity(
 ) -> str:
     """Return a hash that is equal for fits with equal results."""
     options = config.model_dump(mode="json", exclude=_WITHOUT_EFFECT, fallback=str)
-    of_curve = described(indenter), curve.is_depth, curve.stiffness, curve.speed, curve.messages
+    of_curve = (
+        describe_indenter(indenter),
+        curve.is_depth,
+        curve.stiffness,
+        curve.speed,
+        curve.messages,
+    )
     plugins = registry().versions(components_of(config) - {type(config.executor)})
     versions = version("pellicle"), sorted(plugins.items())
     digest = hashlib.sha256(repr((versions, options, common, of_curve)).encode())

@@ -8,14 +8,14 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from pellicle.batch import Part, locked
+from pellicle.batch import Part, lock_files
 from pellicle.components import Say
 from pellicle.errors import StorageError
 
-from .alike import Near
 from .population.row import Row
 from .problem import FitProblem
-from .sealed import read_sealed, write_sealed
+from .representatives import Near
+from .sealed_json import read_sealed, write_sealed
 from .selection.neighbour import Neighbour
 
 FITTED_ELSEWHERE = "another process fits it"
@@ -75,7 +75,7 @@ def passes(
 def fit_alone(task: FitTask, say: Say, *, work: Work, wait: bool) -> dict[str, Any]:
     """Return the kept fit of a curve, or fit and keep it while no other process does."""
     assert task.path is not None, "parts share a folder"
-    with locked(task.path.parent, task.path.stem, wait=wait):
+    with lock_files(task.path.parent, task.path.stem, wait=wait):
         try:
             return read_sealed(task.path)
         except StorageError:

@@ -10,7 +10,7 @@ from .population.fits import ManyFits
 from .record import Record
 from .report import tables
 from .words.population import advice_of_population, by_text, sentences_of_population
-from .words.story import told
+from .words.story import story_lines
 
 _LINES = 50
 """Largest number of curves that are listed although a table is written."""
@@ -18,7 +18,7 @@ _LINES = 50
 
 def print_fit(fit: Record, *, quiet: bool, details: bool, si: bool) -> None:
     """Print numbers, verdict and next step, then warnings; in detail what they rest on."""
-    for line in () if quiet else told(fit, si=si):
+    for line in () if quiet else story_lines(fit, si=si):
         echo(line)
     if fit.sines and not quiet:
         print_table(tables.sines(fit, si=si), si=si)

@@ -89,7 +89,7 @@ def problem(config: FitConfig, sources: Sequence[Source], *, progress: bool = Fa
         except ConfigError as error:
             if len(sources) == 1 or isinstance(error, MissingInputError):
                 raise
-            raise source.named(error, "; leave it out") from None
+            raise source.with_name(error, "; leave it out") from None
     for indenter, curve in zip(indenters, measured, strict=True):
         radius, way = getattr(indenter, "radius", None), float(np.ptp(curve.position))
         if radius and not way / _SCALES < radius < way * _SCALES:

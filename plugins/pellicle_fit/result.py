@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from pellicle.arrays import Array
 
 from .config import FitConfig
-from .config_input import described
+from .config_input import describe_indenter
 from .estimation.candidate import Candidate
 from .estimation.coordinates import MODULUS
 from .estimation.intervals import CONFIDENCE, Estimate
@@ -19,7 +19,7 @@ from .selection.advice import Advice
 from .selection.recipe import TENSION, Answer
 from .words.advice import step
 from .words.names import in_words, words_of
-from .words.story import agreement, calibration, headline, remarks, told, verdict_in_words
+from .words.story import agreement, calibration, headline, remarks, story_lines, verdict_in_words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -71,7 +71,7 @@ class Fit(Record):
 
     def __repr__(self) -> str:
         """Return numbers, verdict and next step; the arrays of a curve would fill a screen."""
-        return "\n".join(told(self))
+        return "\n".join(story_lines(self))
 
     def _repr_html_(self) -> str:
         """Return HTML for a notebook: a sentence, the estimates, and the curve with its fit."""
@@ -100,7 +100,7 @@ def data_of_fit(
     if poissons_ratio is not None:
         for moduli in filter(None, (over_tied, if_present)):
             moduli["youngs_modulus"] = moduli[MODULUS].times(1 - poissons_ratio**2)
-    parameters = {**answer.if_present, **selected.sought}
+    parameters = {**answer.if_present, **selected.all_estimates}
     of_all = [*remarks(answer)]
     messages = [*_messages(answer, curves), *of_all]
     target = [question.target] if question.target else []
@@ -114,7 +114,9 @@ def data_of_fit(
         "target": {
             "effects": sorted(question.of_target),
             "words": in_words(target),
-            "quantities": [name for name in question.wanted if name in selected.parameters],
+            "quantities": [
+                name for name in question.open_quantities if name in selected.parameters
+            ],
         },
         "baseline": [effect.type_name for effect in answer.baseline],
         "model": {"effects": sorted(selected.types), "words": words_of(selected)},
@@ -166,7 +168,7 @@ def _explanation(answer: Answer, fit: Candidate) -> dict[str, Any]:
         "tied": fit in answer.tied,
         "search": fit.minimum.ending.name.lower(),
         "holds_modulus": fit not in answer.not_held,
-        "parameters": bare | {name: e.to_dict() for name, e in fit.sought.items()},
+        "parameters": bare | {name: e.to_dict() for name, e in fit.all_estimates.items()},
     }
 
 
@@ -174,11 +176,12 @@ def _curve(
     answer: Answer, i: int, name: str, measured: Measurement, config: FitConfig
 ) -> dict[str, Any]:
     """Return one of the curves, with what the chosen explanation says of it alone."""
-    curve, checked, sought = answer.selected.whole[i], answer.judgements[i], answer.selected.sought
+    selected, checked = answer.selected, answer.judgements[i]
+    curve, sought = selected.all_rows[i], selected.all_estimates
     slots = [slot for slot in answer.selected.objective.slots if slot.curve == i]
     return {
         "name": name,
-        "indenter": described(curve.indenter),
+        "indenter": describe_indenter(curve.indenter),
         "points": curve.position.size,
         "noise": {"value": checked.deviation, "unit": "N"},
         "noise_weighed": {"value": checked.noise.deviation, "unit": "N"},
@@ -189,7 +192,7 @@ def _curve(
         "quantities": [slot.full_name for slot in slots],
         "sines": [
             {quantity: e.to_dict() for quantity, e in sine.items()}
-            for sine in of_sines(answer.selected, i)
+            for sine in of_sines(selected, i)
         ],
         **{s.name: sought[s.full_name].to_dict() for s in slots if s.full_name in sought},
         "data": data_of(measured, config),

@@ -32,7 +32,7 @@ def refuse_broken(effect: Effect) -> None:
 
 
 @contextmanager
-def strangers_named() -> Iterator[None]:
+def name_strangers() -> Iterator[None]:
     """Add a note that names the stranger's component and its line to exceptions."""
     try:
         yield
@@ -44,6 +44,6 @@ def strangers_named() -> Iterator[None]:
         for family, components in registry().components.items():
             for type_, entry in components.items():
                 file = getsourcefile(entry.component)
-                if file in lines and not entry.origin.is_own:
+                if file in lines and not entry.origin.is_built_in:
                     error.add_note(f"{family} {type_!r} failed ({file}, line {lines[file]})")
         raise

@@ -1,8 +1,7 @@
-"""Solids that drain in fits: where the effect's numbers come from, how far off, and what fits tell.
+"""Solids that drain in fits: where the effect's numbers come from, and how far off.
 
     python tests/benchmarks/draining.py means             coefficients of the effect
     python tests/benchmarks/draining.py forces            of the whole problem: draining_forces.csv
-    python tests/benchmarks/draining.py fits FILE 10      fits of curves from the kernel
 
 Abel's transform makes the contact of a body of revolution one equation on 0 < s < a(t),
 ∫ C(s − s′, t − t′) dg(s′, t′) = δ(t) − shape(s), with F ∝ ∫ g ds. C has a closed form in Fourier
@@ -12,10 +11,9 @@ takes one small matrix.
 
 from __future__ import annotations
 
-import json
 import sys
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache
 from itertools import product
 from pathlib import Path
@@ -36,10 +34,8 @@ from tests.draining_gels import (
     RADIUS,
     Array,
     Gel,
-    measured,
     path_of,
     predicted,
-    solved,
 )
 
 SURFACES = "open", "sealed"
@@ -202,83 +198,6 @@ def print_forces() -> None:
             print(f"{surface},{ratio},{length},{drains},{off[4:60].max():.4f},{off[60:].max():.4f}")
 
 
-# --- Fits --------------------------------------------------------------------------------------
-
-PROTOCOLS = "approach", "hold", "speeds", "radii"
-
-
-def outcome(gel: Gel, protocol: str, number: int) -> dict[str, Any]:
-    """Return what the fit of a curve, or of two, says."""
-    random = np.random.default_rng([number, *repr((gel, protocol)).encode()])
-    noise = random.uniform(0.003, 0.01)
-    paths = {"speeds": ((1.0, 1.0), (10.0, 1.0)), "radii": ((1.0, 1.0), (1.0, 0.25))}
-    radii, curves = [], {}
-    for i, (seconds, share) in enumerate(paths.get(protocol, ((1.0, 1.0),))):
-        radii.append(share * RADIUS)
-        path = solved(gel, seconds, share * RADIUS)
-        curves[str(i)] = measured(path, random, noise, holds=protocol == "hold")
-    options: dict[str, Any] = {
-        "indenter": "paraboloid",
-        "radius": radii if len(set(radii)) > 1 else RADIUS,
-    }
-    if len(curves) > 1:
-        fit = pl.fit_pooled(curves, **options)
-    else:
-        position, force, time = curves["0"]
-        segment = "both" if protocol == "hold" else "approach"
-        fit = pl.fit(position, force, time=time, segment=segment, **options)
-    answer = fit.answer
-    known = answer.selected.estimates.get("diffusivity")
-    return {
-        **gel._asdict(),
-        "protocol": protocol,
-        "number": number,
-        "verdict": answer.verdict.name,
-        "chosen": sorted(answer.selected.types),
-        "modulus": [fit.reduced_modulus.low, fit.reduced_modulus.high],
-        "diffusivity": known and [known.low, known.high],
-    }
-
-
-def print_fits(path: Path, curves: int) -> None:
-    """Fit what is missing, and print a row for each gel and protocol."""
-    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-    found = [json.loads(line) for line in lines]
-    gels = [
-        Gel(ratio, drains, length=length)
-        for ratio, drains, length in product((0.0, 0.2, 0.4), (0.3, 3.0), (0.0, 0.5))
-    ]
-    for number, gel, protocol in product(range(curves), gels, PROTOCOLS):
-        if not any(
-            (Gel(*(o[k] for k in Gel._fields)), o["protocol"], o["number"])
-            == (gel, protocol, number)
-            for o in found
-        ):
-            found.append(outcome(gel, protocol, number))
-            with path.open("a", encoding="utf-8") as file:
-                file.write(json.dumps(found[-1]) + "\n")
-    print("nu,drained,s_over_a,protocol,curves,tension_needed,named,modulus_held,diffusivity_held")
-    for gel, protocol in product(gels, PROTOCOLS):
-        mine = [
-            o
-            for o in found
-            if Gel(*(o[k] for k in Gel._fields)) == gel and o["protocol"] == protocol
-        ]
-        named = [o for o in mine if "poroelastic" in o["chosen"]]
-        print(
-            *(gel.ratio, gel.drains, gel.length, protocol, len(mine)),
-            *(sum(o["verdict"] == "NEEDED" for o in mine), len(named)),
-            sum(_holds(o["modulus"], MODULUS) for o in mine),
-            sum(_holds(o["diffusivity"] or (0, 0), gel.diffusivity) for o in named),
-            sep=",",
-        )
-
-
-def _holds(ends: Sequence[float | None], truth: float) -> bool:
-    low, high = ends
-    return (low is None or low <= truth) and (high is None or truth <= high)
-
-
 if __name__ == "__main__":
     warnings.simplefilter("ignore")
     match sys.argv[1:]:
@@ -286,7 +205,5 @@ if __name__ == "__main__":
             print_means()
         case ["forces"]:
             print_forces()
-        case ["fits", file, count]:
-            print_fits(Path(file), int(count))
         case _:
             print(__doc__)

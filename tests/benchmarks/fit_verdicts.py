@@ -246,7 +246,7 @@ def expected(answer: Answer, truth: Truth, protocol: str) -> float:
     def least(fit: Candidate) -> float:
         exact = [
             replace(curve, force=truth.force(rows), counts=None)
-            for curve, rows in zip(fit.whole, paths, strict=True)
+            for curve, rows in zip(fit.all_rows, paths, strict=True)
         ]
         objective = replace(fit.objective, curves=tuple(exact), memory=())
         return objective.minimise(fit.minimum.at, steps=MOST).chi_squared

@@ -17,7 +17,7 @@ EXAMPLES: dict[str, dict[str, dict[str, Any]]] = {
     family: {
         registered.type: dict(registered.examples[-1])
         for registered in members.values()
-        if registered.origin.is_own
+        if registered.origin.is_built_in
     }
     for family, members in registry().components.items()
 }

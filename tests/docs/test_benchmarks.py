@@ -13,50 +13,38 @@ import pytest
 from tests.docs.blocks import blocks
 
 BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
-SCRIPTS = {
-    "adhesion.py": (
-        ["--points", "32", "--only", "full_contact"],
-        1,
-        {"N": "32", "": "(missed)?"},
+SCRIPTS = [
+    pytest.param(
+        *("adhesion.py", "--points 32 --only full_contact", 1, {"N": "32", "": "(missed)?"}),
+        id="adhesion.py",
     ),
-    "fit_verdicts.py": (
-        ["outcomes.jsonl", "1", "7", "drift"],
-        1,
+    pytest.param(
+        *("fit_verdicts.py", "outcomes.jsonl 1 7 drift", 1),
         {"needed": "0 of 1", "τ₀ held": "1 of 1"},
+        id="fit_verdicts.py",
+        marks=pytest.mark.slow,
     ),
-    "operator_counts.py": (
-        ["--cases", "rough", "--points", "32"],
-        20,
-        {"rough, N = 32": r"[1-4]?\d"},
+    pytest.param(
+        *("operator_counts.py", "--cases rough --points 32", 20, {"rough, N = 32": r"[1-4]?\d"}),
+        id="operator_counts.py",
     ),
-    "cost.py": (
-        ["--cases", "rough", "punch", "--points", "32", "--tension", "0.02"],
-        2,
-        {"applications": r"[1-3]\d", "contact": r"0\.\d+", "seconds": r"\d+\.\d+"},
-    ),
-}
-"""Options of a script, number of rows, and patterns that all cells of a column match."""
-SLOW = {"fit_verdicts.py", "cost.py"}
+]
+"""A script, its options, number of rows, and patterns that all cells of a column match."""
 
 
-@pytest.mark.parametrize(
-    ("script", "size"),
-    [
-        pytest.param(script, size, id=script, marks=[pytest.mark.slow] * (script in SLOW))
-        for script, size in SCRIPTS.items()
-    ],
-)
+@pytest.mark.parametrize(("script", "options", "rows", "patterns"), SCRIPTS)
 def test_table(
     script: str,
-    size: tuple[list[str], int, dict[str, str]],
+    options: str,
+    rows: int,
+    patterns: dict[str, str],
     monkeypatch: pytest.MonkeyPatch,
     tmp_path: Path,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     """A heading, the line under it, and as many rows as were asked for, with sound values."""
-    options, rows, patterns = size
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "argv", [script, *options])
+    monkeypatch.setattr(sys, "argv", [script, *options.split()])
     runpy.run_path(str(BENCHMARKS / script), run_name="__main__")
     assert_is_table(capsys.readouterr().out, rows, patterns)
 

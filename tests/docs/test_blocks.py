@@ -66,7 +66,6 @@ class Reader:
         self.lines_run: set[int] = set()
 
     def do(self, block: Block) -> None:
-        """Do what a block says."""
         if "file" in block.comments:
             (self.folder / block.comments["file"]).write_text(block.text, encoding="utf-8")
             self.forget()

@@ -67,8 +67,8 @@ def test_fig2_agreement_is_what_the_page_says() -> None:
 
 @pytest.mark.slow
 def test_fig3_the_correction_helps_on_every_grid(tmp_path: Path) -> None:
-    """The corrected area is nearer to the true one, and both get there as N grows."""
-    run("fig3.toml", tmp_path, 'study.vary={"grid.points"=[32,64,128]}')
+    """The counted area is 4 % off at N = 32, < 0.5 % beyond 256; the corrected one is nearer."""
+    run("fig3.toml", tmp_path, 'study.vary={"grid.points"=[32,64,128,272]}')
     true = (
         np.pi
         * indent(Paraboloid(radius=RADIUS), MODULUS, 1.0, depth=DEPTH).contact_radius ** 2
@@ -83,9 +83,10 @@ def test_fig3_the_correction_helps_on_every_grid(tmp_path: Path) -> None:
         column(drawn(path, series="with correction, semi-analytic"), "y"), true, rtol=1e-9
     )
     assert (corrected < counted).all()
-    assert counted[0] < 0.05
-    assert counted[-1] < 0.015
-    assert corrected[-1] < 0.006
+    assert counted[0] == pytest.approx(0.04, abs=0.005)
+    assert counted[2] < 0.015
+    assert counted[3] < 0.005
+    assert corrected[2] < 0.006
 
 
 @pytest.mark.slow

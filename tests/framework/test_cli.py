@@ -287,33 +287,21 @@ def test_a_command_that_cannot_show_what_it_wrote_is_named(install: Install, mor
     assert "error: command 'hello' of greetings 1.5" in call("show", "table.h5", code=2).stderr
 
 
-def test_of_two_claimants_none_is_used(install: Install) -> None:
-    """Both are named, and one of them works when the other is switched off."""
+def test_of_two_claimants_none_is_used(install: Install, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both are named, and one of them works when the other is switched off; ours stays in use."""
+    install(name="run")
+    assert "FILE" in call("run", "--help").stdout
     install()
-    install(package="salutations")
+    install("raise SystemExit", package="salutations")
     refusal = call("hello", code=2).stderr
     assert "claimed by greetings 1.5" in refusal
     assert "and by salutations 1.5" in refusal
-    (clash,) = json.loads(call("plugins", "--json").stdout)["broken"]
-    assert clash["origin"] == "greetings, salutations"
-
-
-def test_a_command_of_a_name_of_ours_is_not_used(install: Install) -> None:
-    """Or a plugin could take `run` away."""
-    install(name="run")
-    assert "FILE" in call("run", "--help").stdout
-    (broken,) = json.loads(call("plugins", "--json").stdout)["broken"]
-    assert broken["origin"] == "pellicle, greetings"
-    assert "claimed by pellicle" in broken["error"]
-
-
-def test_one_of_two_claimants_is_switched_off(
-    install: Install, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The other one is then the command."""
+    broken = json.loads(call("plugins", "--json").stdout)["broken"]
+    clashes = {entry["origin"]: entry["error"] for entry in broken}
+    assert clashes.keys() == {"greetings, salutations", "pellicle, greetings"}
+    assert "claimed by pellicle" in clashes["pellicle, greetings"]
     monkeypatch.setenv("PELLICLE_DISABLE_PLUGINS", "salutations")
-    install()
-    install("raise SystemExit", package="salutations")
+    install(name="other")
     assert call("hello").stdout == "hello you\n"
 
 

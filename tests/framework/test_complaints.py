@@ -26,11 +26,9 @@ class Silent(pl.Output):
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """The ends."""
         return self.ends
 
     def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
-        """Write nothing."""
         return ()
 
 
@@ -146,7 +144,6 @@ class Raising(pl.Output):
     type: Literal["raising"] = "raising"
 
     def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
-        """Fail."""
         return (Path(runs.table["nothing"].item()),)
 
 

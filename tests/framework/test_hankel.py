@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from pellicle import ConfigError, Grid, displacement
 from pellicle.arrays import Array
 from pellicle.surface import operator_of
-from pellicle.surface.hankel import ACCURACY, Tabulated
+from pellicle.surface.hankel import ACCURACY, KernelTable
 from pellicle.surface.influence import cell_coefficients
 from pellicle_plugins.kernels.half_spaces import TensedMembrane
 
@@ -28,7 +28,6 @@ class SymbolOnly:
         self.compliance = compliance
 
     def symbol(self, qx: Array, qy: Array) -> Array:
-        """Return that of |q|."""
         return self.compliance(np.hypot(qx, qy))
 
 
@@ -131,7 +130,7 @@ def test_all_cells_of_a_layer_make_up_its_uniform_compression(h: float, nu: floa
 @pytest.mark.parametrize("power", [0.0, 0.3, 0.5, 1.0, 1.5, 1.8])
 def test_power_laws_are_exact(power: float) -> None:
     """q⁻ⁿ is a power of r too: G(r) is r^(n−2) times its value at 1, P its integral."""
-    kernel = Tabulated(lambda q: q**-power, 0.2, 3e3)
+    kernel = KernelTable(lambda q: q**-power, 0.2, 3e3)
     r = np.geomspace(0.2, 3e3, 50)
     at_one = kernel.greens_function(np.ones(1))[0]
     np.testing.assert_allclose(kernel.greens_function(r), at_one * r ** (power - 2), rtol=1e-10)
@@ -171,7 +170,7 @@ SYMBOLS: dict[str, Symbol] = {
 @pytest.mark.parametrize("symbol", SYMBOLS.values(), ids=SYMBOLS)
 def test_gaussian_pressure_in_both_spaces(symbol: Symbol) -> None:
     """∫ p dP in real space is ∫ G p̂ q dq/2π in Fourier space, for p = exp(−r²/2), to 1e-8."""
-    kernel = Tabulated(symbol, 1e-4, 40.0)
+    kernel = KernelTable(symbol, 1e-4, 40.0)
 
     def in_fourier(q: float) -> float:
         return float(symbol(np.array([q]))[0] * q * np.exp(-(q**2) / 2))
@@ -192,7 +191,7 @@ def test_gaussian_pressure_in_both_spaces(symbol: Symbol) -> None:
 @pytest.mark.parametrize("symbol", SYMBOLS.values(), ids=SYMBOLS)
 def test_green_function_is_the_derivative_of_its_primitive(symbol: Symbol) -> None:
     """P between two radii is ∫ G r dr, to 1e-9 of the largest |P|."""
-    kernel = Tabulated(symbol, 0.1, 1e3)
+    kernel = KernelTable(symbol, 0.1, 1e3)
     radii = np.geomspace(0.1, 1e3, 60)
     nodes, weights = np.polynomial.legendre.leggauss(20)
     middle, half = (radii[1:] + radii[:-1]) / 2, np.diff(radii) / 2
@@ -219,7 +218,7 @@ def test_units_do_not_matter(name: str, length: float, modulus: float) -> None:
 @pytest.mark.parametrize("s", [1e-3, 1.0, 1e3, 1e6, 1e8])
 def test_the_estimated_error_is_not_less_than_the_error(s: float) -> None:
     """A table is at least as good as it says, up to rounding."""
-    kernel, closed = Tabulated(membrane(s).compliance, 0.2, 70.0), membrane(s)
+    kernel, closed = KernelTable(membrane(s).compliance, 0.2, 70.0), membrane(s)
     r = np.geomspace(0.2, 70, 3000)
     for result, expected in [
         (kernel.greens_function(r), closed.greens_function(r)),

@@ -28,7 +28,6 @@ class Cell(list[str]):
         return self
 
     def update(self, shown: Any) -> None:
-        """Replace it."""
         text: str = shown._repr_html_() or "" if isinstance(shown, ipython.HTML) else plain(shown)
         self.append(" ".join(text.split()))
 

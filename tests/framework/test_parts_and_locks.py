@@ -22,8 +22,8 @@ import xarray as xr
 import pellicle as pl
 from pellicle.batch import Part
 from pellicle.results import storage
-from pellicle.runs.lock import locked
-from pellicle.studies.runner import planned
+from pellicle.runs.lock import lock_files
+from pellicle.studies.runner import plan_runs
 from tests.command import call, run_parts
 from tests.tables_of_runs import run_file
 
@@ -75,8 +75,8 @@ def test_last_part_writes_the_table(folder: Path) -> None:
 
 def test_runs_of_another_process_are_left_to_it(folder: Path) -> None:
     """Any part passes over locked runs, and so does the whole study, which says so."""
-    first, *_ = planned(pl.Study.from_toml("s.toml"), folder / "s" / "study.h5")
-    with locked(first.journal.stem.parent, first.journal.stem.name):
+    first, *_ = plan_runs(pl.Study.from_toml("s.toml"), folder / "s" / "study.h5")
+    with lock_files(first.journal.stem.parent, first.journal.stem.name):
         printed = run("--part", "any")
         assert f"{first.name}: another process solves it" in printed.stderr
         assert "1 of 6 runs are left" in printed.stdout
@@ -88,7 +88,7 @@ def test_runs_of_another_process_are_left_to_it(folder: Path) -> None:
 def test_part_that_fails_says_so(folder: Path) -> None:
     """A run that fails does not stop the others, is told, and is left for the next call."""
     Path("s.toml").write_text(STUDY.replace('"1.2 mm"', '"1.2 um"'), encoding="utf-8")
-    tasks = planned(pl.Study.from_toml("s.toml"), folder / "s" / "study.h5")
+    tasks = plan_runs(pl.Study.from_toml("s.toml"), folder / "s" / "study.h5")
     (folder / "s" / "runs").mkdir(parents=True)
     tasks[0].journal.path.write_bytes(b"no result")
     printed = run("--part", "1/6", code=1)
@@ -143,8 +143,8 @@ TWO_RUNS = run_file("[study.vary]\nkernel.reduced_modulus = ['10 kPa', '20 kPa']
 def another_process(folder: Path, name: str) -> Iterator[subprocess.Popen[bytes]]:
     """Have another process lock files."""
     code = (
-        "import sys, pathlib\nfrom pellicle.runs.lock import locked\n"
-        "with locked(pathlib.Path(sys.argv[1]), sys.argv[2]):\n"
+        "import sys, pathlib\nfrom pellicle.runs.lock import lock_files\n"
+        "with lock_files(pathlib.Path(sys.argv[1]), sys.argv[2]):\n"
         "    print('locked', flush=True)\n    sys.stdin.read()"
     )
     holder = subprocess.Popen(
@@ -184,7 +184,7 @@ def test_second_process_is_refused(text: str, name: str, tmp_path: Path) -> None
 def test_other_files_are_not_locked(tmp_path: Path) -> None:
     """Runs of another name in the same folder, and of the same name elsewhere, do not wait."""
     (tmp_path / "work.toml").write_text(run_file(), encoding="utf-8")
-    with locked(tmp_path / "out", "other"), locked(tmp_path / "elsewhere", "work"):
+    with lock_files(tmp_path / "out", "other"), lock_files(tmp_path / "elsewhere", "work"):
         result = pl.run(tmp_path / "work.toml", directory=tmp_path / "out", progress=False)
     assert result.converged
 
@@ -195,7 +195,7 @@ def test_nothing_is_locked_where_nothing_is_written(
     """A run without outputs leaves the folder alone."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "work.toml").write_text(run_file(), "utf-8")
-    with locked(tmp_path, "work"):
+    with lock_files(tmp_path, "work"):
         assert pl.run("work.toml", progress=False).converged
 
 
@@ -203,9 +203,9 @@ def test_lock_is_released(tmp_path: Path) -> None:
     """Files may be locked again by the same process, but not twice at once."""
     for _ in range(2):
         with (
-            locked(tmp_path, "work"),
+            lock_files(tmp_path, "work"),
             pytest.raises(pl.StorageError, match="is locked by another process"),
-            locked(tmp_path, "work"),
+            lock_files(tmp_path, "work"),
         ):
             raise AssertionError("locked twice")
     assert list(tmp_path.iterdir()) == []

@@ -135,18 +135,13 @@ def test_interrupt_waits_for_the_next_iteration() -> None:
 
 @pytest.mark.usefixtures("default_handler")
 def test_second_interrupt_acts_at_once() -> None:
-    """Pressing Ctrl-C again does not wait."""
+    """Pressing Ctrl-C again does not wait; one that comes too late is not forgotten."""
     with RunProgress(1, False) as progress:
         signal.raise_signal(signal.SIGINT)
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
         with pytest.raises(KeyboardInterrupt):
             progress(0)(0, 1.0)
-
-
-@pytest.mark.usefixtures("default_handler")
-def test_interrupt_after_the_last_iteration() -> None:
-    """Ctrl-C that comes too late for an iteration is not forgotten."""
     with pytest.raises(KeyboardInterrupt), RunProgress(1, False):
         signal.raise_signal(signal.SIGINT)
 

@@ -20,7 +20,7 @@ from pellicle.contact.caveats import (
     Status,
     by_phrase,
     from_text,
-    ranked,
+    rank_caveats,
     sentence_of,
     status_of,
     to_text,
@@ -88,7 +88,7 @@ def test_steps_are_joined_with_one_field_twice_at_a_time() -> None:
         whole = sum(step.nbytes for step in steps)
         before, _ = tracemalloc.get_traced_memory()
         tracemalloc.reset_peak()
-        joined = storage.joined(steps)
+        joined = storage.join_steps(steps)
         _, peak = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
@@ -253,11 +253,11 @@ def test_a_failure_hides_the_rest_and_the_gravest_comes_first() -> None:
     """The numbers of a failed step mean nothing; coarse cells are coarse in the zone, too."""
     jumped, zone, coarse = map(_filled, (Status.JUMPED, Status.COARSE_ZONE, Status.COARSE))
     load, nan = _filled(Status.LOAD), _filled(Status.NOT_FINITE)
-    assert ranked([jumped, load, nan, coarse]) == (nan,)
-    assert ranked([jumped, zone, coarse]) == (coarse, jumped)
-    assert ranked([jumped, zone]) == (zone, jumped)
-    assert ranked([]) == ()
-    assert status_of(ranked([jumped, load])) is Status.LOAD
+    assert rank_caveats([jumped, load, nan, coarse]) == (nan,)
+    assert rank_caveats([jumped, zone, coarse]) == (coarse, jumped)
+    assert rank_caveats([jumped, zone]) == (zone, jumped)
+    assert rank_caveats([]) == ()
+    assert status_of(rank_caveats([jumped, load])) is Status.LOAD
     assert status_of(()) is Status.CONVERGED
 
 

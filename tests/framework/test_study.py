@@ -49,7 +49,6 @@ class Counting(pl.Solver):
     fails_at: ClassVar[Callable[[pl.Problem], Exception | None]] = lambda problem: None
 
     def solve(self, problem: pl.Problem, start: pl.State | None, monitor: Monitor) -> pl.Solution:
-        """Let another solver do it."""
         if (error := type(self).fails_at(problem)) is not None:
             raise error
         self.solved.append((tension_of(problem), problem.value))
@@ -363,7 +362,6 @@ class Listing(pl.Output):
     scope: ClassVar[Literal["run", "study", "both"]] = "run"
 
     def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
-        """Leave a text of the runs."""
         path = Path(f"{stem}.txt")
         path.write_text(f"{runs.table['force'].max().item()}", encoding="utf-8")
         return (path,)

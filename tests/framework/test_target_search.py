@@ -27,7 +27,6 @@ class Staircase(Solver):
     starts: ClassVar[list[Any]] = []
 
     def solve(self, problem: Problem, start: Any, monitor: Any) -> pl.Solution:
-        """Return a pressure on the first cells."""
         self.starts.append(start)
         pressure = np.zeros(problem.grid.points)
         pressure.ravel()[: self.cells(problem.control.value)] = 1.0
@@ -131,7 +130,6 @@ def test_quantity_that_is_lost_is_not_found() -> None:
         """Divides by zero."""
 
         def solve(self, problem: Problem, start: Any, monitor: Any) -> pl.Solution:
-            """Return no numbers."""
             return pl.Solution(State.of_pressure(np.full(problem.grid.shape, np.nan)), 1)
 
     run = pl.Run(
@@ -164,21 +162,17 @@ class Played(IterativeSolver):
     """Whether it stalls after three iterates that bring no progress in any measure."""
 
     def begin(self, problem: Problem, start: State | None) -> Any:
-        """Return the first iterate."""
         return 0, Progress().after(*self.measures[0])
 
     def step(self, problem: Problem, state: Any) -> Any:
-        """Return the next iterate."""
         index, progress = state
         return index + 1, progress.after(*self.measures[index + 1])
 
     def residual(self, problem: Problem, state: Any) -> float:
-        """Return the residual of an iterate."""
         index: int = state[0]
         return self.measures[index][0]
 
     def pressure(self, state: Any) -> Array:
-        """Return no pressure."""
         return np.zeros((4, 4))
 
     def terminate(self, problem: Problem, state: Any) -> Stop | None:

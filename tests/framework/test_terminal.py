@@ -22,7 +22,7 @@ from pellicle.cli.app import app
 from pellicle.cli.printing import BAD_INPUT, CRASHED, print_table
 from pellicle.components import Case, Column, Table
 from pellicle.config.explain import explanations
-from pellicle.results.wording import means_something
+from pellicle.results.wording import has_meaning
 from pellicle.runs.validation import CheckedCase
 from pellicle.show.sentences import outcome_of_cases
 from pellicle.show.tables import verdicts
@@ -140,7 +140,6 @@ class Refusing(io.StringIO):
         self.error = error
 
     def write(self, text: str) -> int:
-        """Fail."""
         raise self.error
 
 
@@ -321,4 +320,4 @@ def test_show_leaves_out_what_means_nothing() -> None:
     for shape, expected in shown.items():
         axes = {"semi_major_axis": 2.0, "semi_minor_axis": minor[shape], "patches": patches[shape]}
         data = xr.Dataset(axes, attrs={"boundary": "periodic"})
-        assert tuple(name for name in names if means_something(data, name)) == expected
+        assert tuple(name for name in names if has_meaning(data, name)) == expected

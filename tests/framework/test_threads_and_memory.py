@@ -20,7 +20,7 @@ from pellicle import memory
 from pellicle.components.installed import registry
 from pellicle.runs.memory_estimate import memory_of
 from pellicle.runs.runner import default_threads
-from pellicle.surface.convolution import blocks, row_blocks, shared
+from pellicle.surface.convolution import blocks, in_threads, row_blocks
 from tests.framework.broken.catalogue import PARTS
 from tests.tables_of_runs import half_space, paraboloid, pressing, self_affine, tensed
 
@@ -82,7 +82,7 @@ def test_as_many_threads_as_asked_for_take_part(threads: int) -> None:
         return number, threading.current_thread().name
 
     with scipy.fft.set_workers(threads):
-        results = shared(work, range(20))
+        results = in_threads(work, range(20))
     assert [number for number, _ in results] == list(range(20))
     assert len({name for _, name in results[:threads]}) == threads
 
@@ -90,7 +90,9 @@ def test_as_many_threads_as_asked_for_take_part(threads: int) -> None:
 def test_work_within_work_does_not_wait_for_itself() -> None:
     """A block that shares blocks of its own is computed on the thread that has it."""
     with scipy.fft.set_workers(2):
-        sums = shared(lambda row: sum(shared(lambda column: row * column, range(5))), range(50))
+        sums = in_threads(
+            lambda row: sum(in_threads(lambda column: row * column, range(5))), range(50)
+        )
     assert sums == [10 * row for row in range(50)]
 
 
@@ -103,7 +105,7 @@ def test_errors_of_any_thread_are_raised(failing: int) -> None:
             raise ValueError("this block")
 
     with scipy.fft.set_workers(2), pytest.raises(ValueError, match="this block"):
-        shared(work, range(8))
+        in_threads(work, range(8))
 
 
 def test_floating_point_errors_are_handled_as_by_the_caller() -> None:
@@ -115,7 +117,7 @@ def test_floating_point_errors_are_handled_as_by_the_caller() -> None:
         return np.geterr()["divide"]
 
     with scipy.fft.set_workers(2), np.errstate(divide="ignore"):
-        assert shared(work, range(2)) == ["ignore", "ignore"]
+        assert in_threads(work, range(2)) == ["ignore", "ignore"]
 
 
 SIZE = 1e-3

@@ -216,3 +216,12 @@ def test_stored_durations_are_of_files_that_exist() -> None:
     files = {test.partition("::")[0] for test in durations.stored()}
     assert len(files) > 9
     assert [name for name in sorted(files) if not (ROOT / name).exists()] == []
+
+
+def test_a_test_that_has_moved_keeps_its_duration() -> None:
+    """A row is found by the name of the test if no row has its file too."""
+    rows = {"tests/a.py::test_x": 0.01, "tests/b.py::test_y": 0.2}
+    functions = ["tests/a.py::test_x", "tests/new/c.py::test_y", "tests/a.py::test_z"]
+    assert durations.with_moved(rows, functions) == dict(
+        zip(functions, rows.values(), strict=False)
+    )

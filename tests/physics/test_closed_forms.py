@@ -12,7 +12,7 @@ from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.closed_forms.hertz import ellipse, sphere
 from pellicle_plugins.closed_forms.sneddon import cone
 from pellicle_plugins.indenters.of_revolution import Paraboloid
-from tests.tables_of_runs import half_space, heights, paraboloid, reference_rows, tensed
+from tests.tables_of_runs import half_space, heights, paraboloid, pressing, reference_rows, tensed
 from tests.tables_of_runs import step as solved
 
 
@@ -21,10 +21,7 @@ def _step(
 ) -> xr.Dataset:
     return solved(
         solver,
-        grid={"points": points, "size": size},
-        kernel=half_space(),
-        indenter=indenter,
-        loading=loading,
+        **pressing(points, size, half_space(), indenter, **loading),
         corrections=[{"type": "yastrebov"}],
     )
 
@@ -220,32 +217,6 @@ def test_one_pressed_cell_gives_the_reference_influence_coefficients(s_over_d: f
         assert abs(u[int(row["i"]), int(row["j"])] - expected) <= 1e-9 * expected + 1e-15
 
 
-@pytest.mark.slow
-def test_the_published_figure_3(solver: str) -> None:
-    """Yuan & Wang 2020, Figure 3: the counted area is 4 % off at N = 32, < 0.5 % beyond N = 256."""
-    from pellicle_axisymmetric.indentation import indent
-    from pellicle_plugins.indenters.of_revolution import Paraboloid
-
-    true = np.pi * indent(Paraboloid(radius=1e-3), 10e3, 1.0, depth=0.05e-3).contact_radius ** 2
-    errors = {}
-    for points in (32, 64, 128, 272):
-        step = solved(
-            solver,
-            1e-6,
-            grid={"points": points, "size": 2 * np.sqrt(1e-3 * 0.05e-3)},
-            kernel=tensed(1e4, 1.0),
-            indenter=paraboloid(1e-3),
-            loading={"depth": 5e-5},
-            corrections=[{"type": "yastrebov"}],
-        )
-        counted = float(step["contact_area"]) / true - 1
-        corrected = float(step["contact_area_yastrebov"]) / true - 1
-        assert abs(corrected) < abs(counted)
-        errors[points] = counted
-    assert errors[32] == pytest.approx(0.04, abs=0.005)
-    assert abs(errors[272]) < 0.005
-
-
 POINTS = np.array([16, 32, 64, 128])
 A = 0.1
 
@@ -267,10 +238,7 @@ def test_force_is_second_order_and_area_first(s_over_a: float, solver: str) -> N
             step = solved(
                 solver,
                 1e-7,
-                grid={"points": points, "size": size},
-                kernel=tensed(1.0, tension),
-                indenter=paraboloid(),
-                loading={"depth": true.depth},
+                **pressing(points, size, tensed(1.0, tension), paraboloid(), depth=true.depth),
                 corrections=[{"type": "yastrebov"}],
             )
             squares += [

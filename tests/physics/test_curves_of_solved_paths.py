@@ -14,7 +14,7 @@ from pellicle_axisymmetric.indentation import indent
 from pellicle_plugins.indenters.of_revolution import Cone, Paraboloid
 from pellicle_plugins.validation.adhesive_path import curve_of
 from tests.layered_contact import LayeredContact, layered_contact
-from tests.tables_of_runs import heights, steps, tensed
+from tests.tables_of_runs import heights, pressing, steps, tensed
 
 # The equations are linear, so that lengths and loads may be convenient numbers.
 pytestmark = pytest.mark.filterwarnings("ignore:.*are those of the (equations|model)")
@@ -35,12 +35,7 @@ def solved_curve(
 ) -> AdhesiveCurve:
     """Return the adhesive curve of a path that is solved between two depths."""
     path = {"start": depths[0], "stop": depths[1], "num": STEPS}
-    solved = steps(
-        grid={"points": points, "size": size},
-        kernel=kernel,
-        indenter=indenter,
-        loading={"depth": path, "stiffness": True},
-    )
+    solved = steps(**pressing(points, size, kernel, indenter, depth=path, stiffness=True))
     return curve_of(solved, work)
 
 

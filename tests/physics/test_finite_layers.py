@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pellicle as pl
+from tests import tables_of_runs as tables
 from tests.tables_of_runs import half_space, paraboloid, relaxing, step, steps
 
 # The equations are linear, so that loads may be convenient numbers.
@@ -18,12 +19,7 @@ ROUGH = {"type": "self_affine", "rms_height": 5e-6, "hurst": 0.8, "cutoff_wavele
 
 def layer(base: str, poissons_ratio: float, thickness: float = THICKNESS) -> dict[str, Any]:
     """Return the table of a layer."""
-    return {
-        "type": base,
-        "youngs_modulus": YOUNGS,
-        "poissons_ratio": poissons_ratio,
-        "thickness": thickness,
-    }
+    return tables.layer(base, thickness, poissons_ratio, youngs_modulus=YOUNGS)
 
 
 def wave_modulus(nu: float) -> float:

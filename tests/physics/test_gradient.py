@@ -16,7 +16,7 @@ from pellicle.arrays import Array
 from pellicle.components.calls import solution_of
 from pellicle.contact.equilibrium import equilibrium_of
 from pellicle.runs.compose import compose
-from pellicle.schema.model import get, replaced
+from pellicle.schema.model import get, replace_at
 from tests.tables_of_runs import half_space, layer, pressing, relaxing
 
 KERNELS: dict[str, dict[str, Any]] = {
@@ -98,7 +98,7 @@ def difference(run: dict[str, Any], path: str, quantity: str, share: float) -> t
     value = get(pl.Run(**run), path)
     cells, values = [], []
     for factor in (-2, -1, 1, 2):
-        data = solved(replaced(run, path, value * (1 + factor * share)))
+        data = solved(replace_at(run, path, value * (1 + factor * share)))
         assume(bool(data["converged"].all()))
         cells.append(data["contact"].values)
         values.append(data[quantity].item())
@@ -196,7 +196,6 @@ class Mine(pl.Isotropic):
     length: Annotated[float, Field(description="length beyond which they are coupled [m]")] = 3e-5
 
     def compliance(self, q: Array) -> Array:
-        """Return the softness over 1 + q l."""
         return self.softness / (1 + q * self.length)
 
 
@@ -226,7 +225,7 @@ def test_the_library_gives_what_a_run_does(boundary: str) -> None:
         pl.gradient(result, by="kernel.tension")
     # All heights together are the depth.
     stiffness = pl.run(
-        pl.Run(**replaced(run, "loading", {"depth": [4e-6, 8e-6], "stiffness": True})),
+        pl.Run(**replace_at(run, "loading", {"depth": [4e-6, 8e-6], "stiffness": True})),
         progress=False,
     ).dataset["stiffness"]
     np.testing.assert_allclose(again["force_by_heights"].sum(["x", "y"]), stiffness, rtol=1e-9)
@@ -296,7 +295,6 @@ def never() -> Any:
         type: Literal["never"] = "never"
 
         def solve(self, problem: Any, start: Any, monitor: Any) -> Any:
-            """Fail."""
             raise AssertionError("solved")
 
     return Never()

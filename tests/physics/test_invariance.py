@@ -181,7 +181,6 @@ class Bump(pl.Indenter):
     x: float = 0.0
 
     def profile(self, x: Any, y: Any) -> Any:
-        """Return the heights [m]."""
         return -((x - self.x) ** 2 + y**2) / 4
 
 

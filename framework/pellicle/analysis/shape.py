@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pellicle.arrays import Array, Mask
-from pellicle.contact.masks import Labels, labelled
+from pellicle.contact.masks import Labels, label_parts
 from pellicle.grid import Grid
 from pellicle.surface.convolution import blocks
 
@@ -42,7 +42,7 @@ def patches(contact: ArrayLike, grid: Grid, connectivity: Literal[4, 8] = 4) -> 
     share a corner do, too. On a periodic grid, patches that touch across the edge of the domain are
     one.
     """
-    labels, count = labelled(np.asarray(contact, dtype=bool), grid.boundary, connectivity)
+    labels, count = label_parts(np.asarray(contact, dtype=bool), grid.boundary, connectivity)
     cells = np.bincount(labels.ravel(), minlength=count + 1)[1:]
     order = np.argsort(-cells, kind="stable")
     rank = np.zeros(count + 1, dtype=np.int64)

@@ -17,7 +17,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from pellicle.errors import PellicleError, PluginError
 from pellicle.plugins.commands import commands, errors_attributed_to, load_command, typer_command
-from pellicle.plugins.origins import Broken
+from pellicle.plugins.origins import BrokenPlugin
 
 from .printing import BAD_INPUT, CRASHED, INTERRUPTED, echo, only_json, print_warning
 
@@ -61,7 +61,7 @@ class _Commands(Mapping[str, Any]):
 
     def __getitem__(self, name: str) -> TyperCommand:
         command = load_command(name)
-        if isinstance(command, Broken):
+        if isinstance(command, BrokenPlugin):
             return _Listed(name, help=f"broken: {escape(command.error)}")
         return _Listed(name, help=inspect.getdoc(command.function))
 
@@ -71,7 +71,7 @@ class _Listed(TyperCommand):
 
     def make_context(self, *args: Any, **kwargs: Any) -> Any:
         command = typer_command(str(self.name), cls=_Command)
-        if isinstance(command, Broken):
+        if isinstance(command, BrokenPlugin):
             raise PluginError(f"command {self.name!r} is broken: {command}")
         return command.make_context(*args, **kwargs)
 

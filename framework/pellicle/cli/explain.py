@@ -8,7 +8,7 @@ import typer
 
 from pellicle.errors import PluginError
 from pellicle.plugins.commands import file_models
-from pellicle.plugins.origins import Broken
+from pellicle.plugins.origins import BrokenPlugin
 
 from .printing import echo, print_json, print_table
 
@@ -29,9 +29,9 @@ def explain(
     from pellicle.config.explain import explanations, words_by_kind
 
     models = file_models()
-    if isinstance(broken := models.get(type_ or ""), Broken):
+    if isinstance(broken := models.get(type_ or ""), BrokenPlugin):
         raise PluginError(f"the file of command {type_!r} is broken: {broken}")
-    tables = {name: model for name, model in models.items() if not isinstance(model, Broken)}
+    tables = {name: model for name, model in models.items() if not isinstance(model, BrokenPlugin)}
     if type_ is None:
         words = words_by_kind(tables)
         if json:

@@ -37,7 +37,7 @@ def plot(
     from pellicle.results.runs import StoredRuns
     from pellicle.studies.runner import is_table, read
 
-    from .results import written
+    from .results import command_display
 
     names = [str(format_) for format_ in formats or [Format.PNG]]
     output = registry().make(Output, {"type": "figures", "formats": names})
@@ -46,7 +46,7 @@ def plot(
         runs, name = StoredRuns.of_study(table, folder), "study"
     else:
         file = file_of_run(results)
-        with written(file) as of_command:
+        with command_display(file) as of_command:
             if of_command:
                 for path in of_command.plot(directory or file.parent, names):
                     echo(f"wrote {path}")

@@ -9,7 +9,7 @@ import typer
 
 from pellicle.errors import ConfigError
 from pellicle.plugins.commands import commands, file_models, typer_command
-from pellicle.plugins.origins import Broken, Origin, claimed_by
+from pellicle.plugins.origins import BrokenPlugin, Origin, claimed_by
 
 from .printing import NOT_CONVERGED, echo, print_json, print_table
 
@@ -47,7 +47,7 @@ def plugins(
     ] + [
         ("command", name, of.distribution, of.version, (command.help or "").partition("\n")[0])
         for (name, (of, *_)), command in zip(owners.items(), loaded_commands.values(), strict=True)
-        if not isinstance(command, Broken)
+        if not isinstance(command, BrokenPlugin)
     ]
     clashes: dict[tuple[str, str], Sequence[Origin]] = {
         **contents.clashes,
@@ -56,7 +56,7 @@ def plugins(
     failed = {
         loaded.origin: loaded
         for name, loaded in (*file_models().items(), *loaded_commands.items())
-        if isinstance(loaded, Broken) and ("command", name) not in clashes
+        if isinstance(loaded, BrokenPlugin) and ("command", name) not in clashes
     }
     unusable = [
         (broken.origin.entry_point, [broken.origin], broken.error)
@@ -91,7 +91,7 @@ def _check(name: str | None, json: bool) -> None:
         for type_, registered in members.items():
             origin = registered.origin
             names = {family, type_, f"{family}.{type_}", origin.distribution}
-            if name in names or (name is None and not origin.is_own):
+            if name in names or (name is None and not origin.is_built_in):
                 holds, verdict = verdict_on_examples(registered)
                 all_hold = all_hold and holds
                 rows.append((family, type_, origin.distribution, verdict))

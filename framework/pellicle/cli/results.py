@@ -30,7 +30,7 @@ from .printing import NOT_CONVERGED, echo, print_json, print_table, print_warnin
 
 
 @contextmanager
-def written(file: Path) -> Iterator[Any]:
+def command_display(file: Path) -> Iterator[Any]:
     """Yield what shows the table of a command, as `RegisterCommand` says; None for a result."""
     name = str(storage.attributes(file, "any").get("command", ""))
     command = load_command(name) if name in commands() else None

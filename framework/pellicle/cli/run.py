@@ -22,7 +22,7 @@ from .printing import (
 )
 
 if TYPE_CHECKING:
-    from pellicle.studies.part import PartSolved
+    from pellicle.studies.part import PartOutcome
 
 
 def run(
@@ -79,7 +79,7 @@ def run(
     from pellicle.runs.progress import RunProgress
     from pellicle.show import sentences, tables
     from pellicle.studies import runner as studies
-    from pellicle.studies.part import PartSolved, execute_part
+    from pellicle.studies.part import PartOutcome, execute_part
 
     from .results import exit_by_outcome, print_outcome_json, print_tables
 
@@ -95,8 +95,8 @@ def run(
     stem = folder / file.stem
     if dry_run:
         studies.warn_of_scale(configuration)
-        tasks = studies.planned(configuration, stem, overwrite=overwrite)
-        table, sentence = tables.planned(share.of(tasks) if share else tasks)
+        tasks = studies.plan_runs(configuration, stem, overwrite=overwrite)
+        table, sentence = tables.plan_table(share.of(tasks) if share else tasks)
         if json:
             print_json({"runs": table.records})
         else:
@@ -112,7 +112,7 @@ def run(
                 executed = execute_part(configuration, folder, share, **keep_on)
             else:
                 executed = studies.execute(configuration, folder, overwrite=overwrite, **keep_on)
-            if isinstance(executed, PartSolved):
+            if isinstance(executed, PartOutcome):
                 _exit_by_part(executed, whole, json=json, quiet=quiet)
             outcome, files, resumed = executed
         else:
@@ -127,26 +127,27 @@ def run(
                 echo(sentences.larger_domain(file, folder), err=True)
     except KeyboardInterrupt:
         finished = "runs" if isinstance(configuration, Study) else "steps"
-        echo(sentences.interrupted(finished, folder), err=True)
+        echo(sentences.interruption_place(finished, folder), err=True)
         raise typer.Exit(INTERRUPTED) from None
     if json:
         print_outcome_json(outcome, files)
     elif not quiet:
         print_tables(outcome, si=si, whole=False)
-        for sentence in sentences.done(files, resumed, whole, monotonic() - began):
+        for sentence in sentences.work_summary(files, resumed, whole, monotonic() - began):
             echo(sentence)
     exit_by_outcome(outcome)
 
 
-def _exit_by_part(solved: PartSolved, whole: str, *, json: bool, quiet: bool) -> NoReturn:
+def _exit_by_part(solved: PartOutcome, whole: str, *, json: bool, quiet: bool) -> NoReturn:
     """Print what a part left and which of its runs failed, and exit by these."""
     if json:
-        print_json({"failed": solved.failed, "left": solved.left})
+        print_json({"failed": solved.failures, "left": solved.open_runs})
     elif not quiet:
-        echo(f"{solved.left} of {whole} are left; the last part, or no --part, writes the table")
-    for sentence in solved.failed:
+        left = solved.open_runs
+        echo(f"{left} of {whole} are left; the last part, or no --part, writes the table")
+    for sentence in solved.failures:
         echo(sentence, err=True)
-    raise typer.Exit(NOT_CONVERGED if solved.failed else 0)
+    raise typer.Exit(NOT_CONVERGED if solved.failures else 0)
 
 
 @hookimpl

@@ -8,7 +8,7 @@ import typer
 
 from pellicle.errors import ConfigError, PluginError
 from pellicle.plugins.commands import file_models
-from pellicle.plugins.origins import Broken
+from pellicle.plugins.origins import BrokenPlugin
 
 from .printing import print_json
 
@@ -34,6 +34,6 @@ def schema(
             "COMMAND",
         )
     model = Run if command is None else models[command]
-    if isinstance(model, Broken):
+    if isinstance(model, BrokenPlugin):
         raise PluginError(f"the file of command {command!r} is broken: {model}")
     print_json(make_schema(model))

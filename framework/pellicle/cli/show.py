@@ -10,14 +10,20 @@ from .printing import NOT_CONVERGED, AsJSON, InSI, Stored, echo
 def show(results: Stored, si: InSI = False, json: AsJSON = False) -> None:
     """Print steps of a result or runs of a study, and its origin; or what a command wrote."""
     from pellicle.results.result import Result, file_of_run, load
-    from pellicle.results.status import unfinished
+    from pellicle.results.status import interruption_note
     from pellicle.show import sentences
     from pellicle.studies.runner import is_table, read
 
-    from .results import exit_by_outcome, print_origin, print_outcome_json, print_tables, written
+    from .results import (
+        command_display,
+        exit_by_outcome,
+        print_origin,
+        print_outcome_json,
+        print_tables,
+    )
 
     if not (is_study := is_table(results)):
-        with written(file_of_run(results)) as of_command:
+        with command_display(file_of_run(results)) as of_command:
             if of_command:
                 of_command.show(si=si, json=json)
                 return
@@ -31,6 +37,6 @@ def show(results: Stored, si: InSI = False, json: AsJSON = False) -> None:
         for message in sentences.caveats(outcome):
             echo(message, err=True)
     exit_by_outcome(outcome)
-    if isinstance(outcome, Result) and (message := unfinished(outcome)):
+    if isinstance(outcome, Result) and (message := interruption_note(outcome)):
         echo(message, err=True)
         raise typer.Exit(NOT_CONVERGED)

@@ -10,7 +10,7 @@ from pellicle.contact.problem import Depth as Depth
 from pellicle.contact.problem import Force as Force
 from pellicle.contact.time_step import Branch as Branch
 from pellicle.contact.time_step import OfWave as OfWave
-from pellicle.contact.time_step import relax_alike as relax_alike
+from pellicle.contact.time_step import have_equal_branches as have_equal_branches
 from pellicle.grid import Boundary as Boundary
 from pellicle.grid import boundary_of_run as boundary_of_run
 from pellicle.grid import pair as pair

@@ -14,7 +14,7 @@ from pellicle.checks import component_name, errors_attributed_to, read_only, rea
 from pellicle.contact.equilibrium import Equilibrium
 from pellicle.contact.problem import Adhesive, Depth, Force, Problem
 from pellicle.contact.solution import Solution, State, Stop
-from pellicle.errors import ConfigError, PluginError, problems_within, shown
+from pellicle.errors import ConfigError, PluginError, excerpt, problems_within
 from pellicle.grid import Grid, grid_of_run
 from pellicle.units import DIGITS, readable
 
@@ -38,7 +38,7 @@ def profile_of(indenter: Indenter, grid: Grid) -> Array:
     profile = real_array(indenter, "profile(x, y)", value, grid.shape)
     if footprint not in get_args(Footprint):
         raise PluginError(
-            f"{component_name(indenter)}: footprint is {shown(footprint)}; it has to be "
+            f"{component_name(indenter)}: footprint is {excerpt(footprint)}; it has to be "
             "'unbounded' or 'domain'"
         )
     if np.isneginf(profile).all():
@@ -130,8 +130,8 @@ def target_of(prescription: Prescription, setting: Setting, value: float) -> Dep
     call = f"target(setting, {value:g})"
     if not isinstance(target, (Depth, Force, Search)):
         raise PluginError(
-            f"{component_name(prescription)}: {call} returned {shown(target)}; it has to return a "
-            "pellicle.Depth, Force or Search"
+            f"{component_name(prescription)}: {call} returned {excerpt(target)}; it has to return "
+            "a pellicle.Depth, Force or Search"
         )
     for field in ("value", "compliance", "goal", "resolution", "width", "guess"):
         number = getattr(target, field, None)
@@ -170,8 +170,8 @@ def report_of(prescription: Prescription, setting: Setting, step: Equilibrium) -
     declared = {v.name for v in prescription.variables if v.kind != "residual"}
     if not isinstance(report, dict) or report.keys() != declared:
         raise PluginError(
-            f"{component_name(prescription)}: report() returned {shown(report)}; it has to return "
-            f"a dict of {', '.join(sorted(declared)) or 'nothing'}, as its variables declare"
+            f"{component_name(prescription)}: report() returned {excerpt(report)}; it has to "
+            f"return a dict of {', '.join(sorted(declared)) or 'nothing'}, as its variables declare"
         )
     return {
         name: real_number(prescription, f"report()[{name!r}]", value)
@@ -218,13 +218,13 @@ def _checked_state(solver: Solver, problem: Problem, value: object) -> State:
     """Return a copy of the state of a solution; without a law its pressure is all that counts."""
     if not isinstance(value, Solution):
         raise PluginError(
-            f"{component_name(solver)}: solve() returned {shown(value)}; it has to return a "
+            f"{component_name(solver)}: solve() returned {excerpt(value)}; it has to return a "
             "pellicle.Solution"
         )
     for member, kind in {"state": State, "iterations": Integral, "stop": Stop}.items():
         if not isinstance(part := getattr(value, member), kind):
             raise PluginError(
-                f"{component_name(solver)}: solve() returned a Solution of {member} {shown(part)}"
+                f"{component_name(solver)}: solve() returned a Solution of {member} {excerpt(part)}"
                 "; it needs a pellicle.State, such as State.of_pressure(pressure), a whole "
                 "number of iterations and a pellicle.Stop"
             )

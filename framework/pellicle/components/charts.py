@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from pellicle.analysis import Leg
 from pellicle.arrays import Array, Cells, Mask
-from pellicle.units import DIGITS, NOTHING, Scale, axis_unit, printed
+from pellicle.units import DIGITS, NOTHING, Scale, axis_unit, format_unit
 
 _SI_DIGITS = 6
 
@@ -66,7 +66,7 @@ class Axis:
     def head(self) -> str:
         """The head of the column of its numbers in SI."""
         bare = self.as_given or self.unit == "1"
-        return self.column or (self.words if bare else f"{self.words} [{printed(self.unit)}]")
+        return self.column or (self.words if bare else f"{self.words} [{format_unit(self.unit)}]")
 
 
 class Look(NamedTuple):
@@ -241,7 +241,7 @@ class Column:
     def unit_and_digits(self, *, si: bool = False) -> tuple[Scale, int]:
         """Return how people read the numbers; with ``si`` without a prefix and with six digits."""
         if si:
-            return Scale(1.0, "" if self.unit == "1" else printed(self.unit)), _SI_DIGITS
+            return Scale(1.0, "" if self.unit == "1" else format_unit(self.unit)), _SI_DIGITS
         return self.scale, self.digits
 
     def read(self, *, si: bool = False) -> tuple[str, list[str]]:

@@ -52,7 +52,7 @@ class Indenter(Component):
         if lattice is None:
             return self.profile(x, y)
         known_at_cells = self.footprint == "domain"
-        return (lattice.rolled if known_at_cells else lattice.envelope)(self.profile, x, y)
+        return (lattice.roll if known_at_cells else lattice.envelope)(self.profile, x, y)
 
 
 @runtime_checkable

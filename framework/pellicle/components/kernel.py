@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_number
 from pellicle.contact.time_step import Branch, OfWave
-from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.errors import ConfigError, PluginError, excerpt
 from pellicle.plugins.component import Component
 from pellicle.surface.from_kernel import HasClosedForm, closed_form_of, mean_compliance
 
@@ -223,7 +223,7 @@ def branches_of(kernel: Kernel) -> tuple[Branch, ...]:
     right = (b.share > 0 and (callable(b.time) or 0 < b.time < math.inf) for b in branches)
     if not all(right) or total > 1 + _ROUNDING:
         raise PluginError(
-            f"{component_name(kernel)}: branches() returned {shown(branches)}; shares and times "
+            f"{component_name(kernel)}: branches() returned {excerpt(branches)}; shares and times "
             "have to be positive and finite, and the shares sum to at most 1"
         )
     return branches

@@ -44,7 +44,7 @@ class Lattice(NamedTuple):
         assert highest is not None
         return highest
 
-    def rolled(self, profile: Callable[[Array, Array], Array], x: Array, y: Array) -> Array:
+    def roll(self, profile: Callable[[Array, Array], Array], x: Array, y: Array) -> Array:
         """Return the profile [m] of a body known at the cells of a period only, moved by cells."""
         centred, cells = self.grid.coordinates(), []
         for number, (edge, points) in enumerate(zip(self.grid.spacing, (x, y), strict=True)):

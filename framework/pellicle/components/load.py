@@ -19,7 +19,7 @@ from pydantic_core import CoreSchema
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 from pellicle.plugins.component import Component
-from pellicle.schema.model import replaced, walk
+from pellicle.schema.model import replace_at, walk
 from pellicle.schema.ranges import is_path, path_of, path_schemas
 from pellicle.units import parts_of, quantity_of
 from pellicle.variables import VARIABLES, Variable, words_of_name
@@ -71,15 +71,15 @@ class Load(Component):
         return float("inf")
 
     @property
-    def varied(self) -> LoadPath | None:
+    def varying_field(self) -> LoadPath | None:
         """The field that varies; None if none does."""
         return next(iter(self._paths), None)
 
     def at(self, step: int) -> Self:
         """Return the load in a load step, counted from 0, each of its fields one value."""
-        if self.varied is None:
+        if (path := self.varying_field) is None:
             return self
-        return type(self)(**replaced(self, self.varied.name, self.varied.values[step]))
+        return type(self)(**replace_at(self, path.name, path.values[step]))
 
     @property
     def _paths(self) -> list[LoadPath]:

@@ -16,7 +16,7 @@ from pellicle.contact.law import Law
 from pellicle.contact.load_step import FinishedStep
 from pellicle.contact.problem import Adhesive, Depth, Force, Problem
 from pellicle.contact.solution import State
-from pellicle.errors import PluginError, shown
+from pellicle.errors import PluginError, excerpt
 from pellicle.grid import Grid
 from pellicle.plugins.component import Component
 from pellicle.surface.operators import Operator
@@ -138,8 +138,8 @@ class Prescription(Component):
             if is_taken or not variable.name.isidentifier():
                 reason = "the name of another variable" if is_taken else "not a name"
                 raise PluginError(
-                    f"{name}: variables has {shown(variable.name)}, which is {reason}; choose one "
-                    "of letters, digits and _ that no result has yet"
+                    f"{name}: variables has {excerpt(variable.name)}, which is {reason}; choose "
+                    "one of letters, digits and _ that no result has yet"
                 )
 
     @classmethod

@@ -14,7 +14,7 @@ from pellicle.config.run import Run
 from pellicle.config.study import Study
 from pellicle.schema.model import walk
 from pellicle.surface import along_axes
-from pellicle.units import Quantity, printed, quantity_of, readable
+from pellicle.units import Quantity, format_unit, quantity_of, readable
 
 _LARGE = 1.0
 """Edge of a domain [m] beyond which a solid of a modulus above `_STIFF` is doubted."""
@@ -113,6 +113,6 @@ def _doubt(path: str, value: float, unit: str, reason: str = "") -> tuple[str, s
     number, usual = f"{value:g}", str(Quantity(unit).example).partition(" ")[2]
     because = f", {reason}" if reason else ""
     return path, (
-        f"{path} is {number} {printed(unit)}{because}; a number without a unit is in SI: "
+        f"{path} is {number} {format_unit(unit)}{because}; a number without a unit is in SI: "
         f"give one, such as '{number} {usual}', if that is not meant"
     )

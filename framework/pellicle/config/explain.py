@@ -14,9 +14,9 @@ from pydantic.fields import FieldInfo
 
 from pellicle.components import Prescription
 from pellicle.components.installed import registry
-from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.errors import ConfigError, PluginError, excerpt
 from pellicle.grid import Grid
-from pellicle.plugins.registry import Registered
+from pellicle.plugins.registry import InstalledComponent
 from pellicle.schema.messages import similar
 
 from .describe import FieldRow, field_rows
@@ -77,10 +77,10 @@ def explanations(word: str, tables: Mapping[str, type[BaseModel]]) -> list[Expla
         for broken in registry().broken:
             entry = broken.origin.entry_point
             if name in (entry, *entry.split(".")):
-                raise PluginError(f"{shown(word)} is broken: {broken}")
+                raise PluginError(f"{excerpt(word)} is broken: {broken}")
         hint = similar(name, {*entries, *families, *itertools.chain(*families.values())})
         raise ConfigError(
-            f"{shown(word)} is neither a type, a family nor a table of what is installed; "
+            f"{excerpt(word)} is neither a type, a family nor a table of what is installed; "
             f"{hint or 'see `pellicle plugins`'}",
             "TYPE",
         )
@@ -110,7 +110,7 @@ def _of_table(name: str, model: type[BaseModel]) -> Explanation:
     return Explanation(name, "table", "", _documentation(model), rows, example)
 
 
-def _of_component(entry: Registered) -> Explanation:
+def _of_component(entry: InstalledComponent) -> Explanation:
     component, example = entry.component, ""
     fields: Mapping[str, FieldInfo] = component.model_fields
     table: dict[str, Any] = {"type": entry.type}

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pellicle.checks import component_name
 from pellicle.components import Output
-from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.errors import ConfigError, PluginError, excerpt
 
 
 def stem_of(output: Output, stem: Path) -> Path:
@@ -42,7 +42,7 @@ def _suffixes(output: Output) -> list[str]:
     suffixes: object = output.suffixes
     if not isinstance(suffixes, tuple) or not all(isinstance(text, str) for text in suffixes):
         raise PluginError(
-            f"{component_name(output)}: suffixes is {shown(suffixes)}; it has to be a tuple of "
+            f"{component_name(output)}: suffixes is {excerpt(suffixes)}; it has to be a tuple of "
             'texts, such as (".txt",)'
         )
     return [f"{_own_suffix(output)}{suffix}" for suffix in suffixes]

@@ -9,7 +9,7 @@ from pellicle.components import Interaction
 from pellicle.components.kernel import branches_of
 from pellicle.errors import ConfigError
 from pellicle.schema.model import python_names, walk
-from pellicle.units import Quantity, one, quantity_of, si_unit
+from pellicle.units import Quantity, quantity_of, si_unit, unit_quantity
 from pellicle.variables import VARIABLES, Variable
 
 if TYPE_CHECKING:
@@ -64,7 +64,9 @@ def derivatives_of(run: Run) -> list[Variable]:
     return [
         Variable(
             f"{quantity}_by_{names[path]}",
-            unit if (by := quantities[path].unit) == "1" else si_unit(one(unit) / one(by)),
+            unit
+            if (by := quantities[path].unit) == "1"
+            else si_unit(unit_quantity(unit) / unit_quantity(by)),
             f"derivative of the {quantity} by {path}, what is prescribed kept",
             "field" if path == HEIGHTS else "requested",
             title=f"d({quantity})/d({path})",

@@ -12,7 +12,7 @@ from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, create_m
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
 
-from pellicle.errors import ConfigError, all_problems, shown
+from pellicle.errors import ConfigError, all_problems, excerpt
 from pellicle.schema.model import Model
 from pellicle.schema.ranges import is_path, path_of, path_schemas, ramp
 from pellicle.units import Quantity
@@ -106,7 +106,7 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
                 table = entry.model_dump() if isinstance(entry, Leg) else entry
                 if not isinstance(table, Mapping):
                     raise ConfigError(
-                        f"{shown(entry)} is not a leg, as others of the list are; give {_FORMS}"
+                        f"{excerpt(entry)} is not a leg, as others of the list are; give {_FORMS}"
                     )
                 keys = [key for key in KINDS if key in table]
                 if len(keys) != 1:
@@ -122,8 +122,8 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
         )
     tables = [leg.model_dump() for leg in legs]
     if (steps := sum(table["num"] * table.get("cycles", 1) for table in tables)) > _MOST:
-        raise ConfigError(f"has {shown(steps)} load steps; give legs of {_MOST} at most")
-    lowest = min(sampled(legs))
+        raise ConfigError(f"has {excerpt(steps)} load steps; give legs of {_MOST} at most")
+    lowest = min(samples_of_legs(legs))
     try:
         quantity(lowest.value)
     except ValueError:
@@ -135,7 +135,7 @@ def legs_of(entries: Sequence[object], quantity: Quantity) -> tuple[Leg, ...]:
     return tuple(legs)
 
 
-def sampled(legs: Sequence[Leg]) -> tuple[Sample, ...]:
+def samples_of_legs(legs: Sequence[Leg]) -> tuple[Sample, ...]:
     """Return the load steps of a path in legs, which begins at the value 0 at time 0."""
     samples = [Sample(0.0, 0.0, 0)]
     for index, leg in enumerate(legs):

@@ -27,12 +27,12 @@ from pydantic_core import CoreSchema
 from pellicle.components import FromRegistry, Prescription
 from pellicle.components.installed import registry
 from pellicle.components.prescription import OPTIONS
-from pellicle.errors import ConfigError, Problem, all_problems, shown
+from pellicle.errors import ConfigError, Problem, all_problems, excerpt
 from pellicle.schema.messages import no_field
 from pellicle.schema.model import Model
 from pellicle.units import Quantity
 
-from .legs import Leg, LoadSteps, Sample, sampled
+from .legs import Leg, LoadSteps, Sample, samples_of_legs
 
 _TIME = (
     "time [s] at the end of each step, for a solid that relaxes; equal times are a jump, and the "
@@ -151,7 +151,11 @@ class Loading(Options):
     @cached_property
     def samples(self) -> tuple[Sample, ...]:
         """The load steps of a path in legs; none of any other path."""
-        return sampled(legs) if (legs := [leg for leg in self.path if isinstance(leg, Leg)]) else ()
+        return (
+            samples_of_legs(legs)
+            if (legs := [leg for leg in self.path if isinstance(leg, Leg)])
+            else ()
+        )
 
     @cached_property
     def values(self) -> tuple[float, ...]:
@@ -215,7 +219,7 @@ def times_from(table: object) -> Times:
     if table is None or isinstance(table, Times):
         return table or Times()
     if not isinstance(table, Mapping):
-        raise ConfigError(f"{shown(table)} is not allowed; give a table with time")
+        raise ConfigError(f"{excerpt(table)} is not allowed; give a table with time")
     with all_problems() as within:
         for name in table.keys() - Times.model_fields.keys():
             with within(name):

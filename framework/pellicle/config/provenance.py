@@ -14,7 +14,7 @@ from pellicle.components import Component
 from pellicle.components.installed import registry
 from pellicle.files import for_document, is_file
 from pellicle.plugins.component import components_in
-from pellicle.schema.model import get, replaced, walk
+from pellicle.schema.model import get, replace_at, walk
 
 if TYPE_CHECKING:
     from .run import Run
@@ -34,7 +34,7 @@ def identity_of(run: Run) -> str:
         if isinstance(value, Path) and isinstance(get(identifying, path), str):
             stat = value.stat() if is_file(value) else None
             content = stat and _digest(value.absolute(), stat.st_mtime_ns, stat.st_size)
-            identifying = replaced(identifying, path, content or str(value))
+            identifying = replace_at(identifying, path, content or str(value))
     versions = registry().versions(used)
     if others := {name: number for name, number in versions.items() if name != "pellicle"}:
         identifying["plugins"] = others

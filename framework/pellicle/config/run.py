@@ -35,7 +35,7 @@ from pellicle.components import (
 )
 from pellicle.components.installed import registry
 from pellicle.components.kernel import branches_of
-from pellicle.errors import ConfigError, all_problems, problems_within, shown
+from pellicle.errors import ConfigError, all_problems, excerpt, problems_within
 from pellicle.grid import Grid, grid_of_run
 from pellicle.plugins.component import words_of_type
 from pellicle.schema.from_file import FromFile
@@ -128,7 +128,7 @@ class Run(FromFile):
         if isinstance(value, Mapping):
             return Loading(**fields_from(value, interaction=pulls))
         if not isinstance(value, Loading):
-            raise ConfigError(f"{shown(value)} is not allowed; give a table (the load steps)")
+            raise ConfigError(f"{excerpt(value)} is not allowed; give a table (the load steps)")
         if not pulls:
             value.refuse_pulls()
         return value
@@ -291,7 +291,7 @@ class Run(FromFile):
         """The variable that names its load steps: what is prescribed, or varies of a load."""
         if self.load is None:
             return self.indentation.loading.prescribed
-        path = self.load.varied
+        path = self.load.varying_field
         return path.variable.name if path else "force"
 
     @property
@@ -299,7 +299,7 @@ class Run(FromFile):
         """The number of load steps; of a load that of its path or its times, or 1."""
         if isinstance(self.loading, Loading):
             return len(self.loading.values)
-        path = self.load.varied if self.load else None
+        path = self.load.varying_field if self.load else None
         return len(path.values if path else self.loading.times or (0.0,))
 
     @property
@@ -327,7 +327,7 @@ class Run(FromFile):
 
     @property
     def _variables_of_load(self) -> list[Variable]:
-        path = self.load.varied if self.load else None
+        path = self.load.varying_field if self.load else None
         listed = [path.variable] if path else []
         listed += [*OF_LOAD, *[VARIABLES["time"]] * (self.loading.times is not None)]
         return [variable for variable in listed if variable.type != "text"]

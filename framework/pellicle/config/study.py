@@ -14,11 +14,11 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from pellicle.components import Executor, FromRegistry, Table
-from pellicle.errors import ConfigError, Problem, all_problems, first_of, problems_within, shown
+from pellicle.errors import ConfigError, Problem, all_problems, excerpt, first_of, problems_within
 from pellicle.results.derived import constants
 from pellicle.schema.expression import CONSTANTS, FUNCTIONS, evaluate, names_in
 from pellicle.schema.from_file import FromFile, overridden, paths_relative_to, read_toml
-from pellicle.schema.model import get, python_names, replaced
+from pellicle.schema.model import get, python_names, replace_at
 from pellicle.schema.ranges import Axes, expand
 from pellicle.variables import FIELDS, VARIABLES
 
@@ -56,7 +56,7 @@ def _as_table(value: object) -> object:
 
 def _expanded(entries: object) -> tuple[Axes, ...]:
     if not isinstance(entries, (list, tuple)):
-        raise ConfigError(f"{shown(entries)} is not allowed; give [[study.zip]] tables")
+        raise ConfigError(f"{excerpt(entries)} is not allowed; give [[study.zip]] tables")
     tables = []
     for index, table in enumerate(entries):
         with problems_within(str(index)):
@@ -237,7 +237,7 @@ class Study(FromFile):
         for parameter in self._parameters:
             with problems_within("vary"):
                 # Raises for one that is too long, which the message of a run would begin with.
-                replaced({}, parameter, None)
+                replace_at({}, parameter, None)
         for first, second in itertools.combinations(self._parameters, 2):
             if first == second or first.startswith(f"{second}.") or second.startswith(f"{first}."):
                 short, long = sorted((first, second), key=len)
@@ -270,14 +270,16 @@ class Study(FromFile):
                 with within(f"derived.{name}"):
                     if differ := sorted(names_in(text) & varying):
                         raise ConfigError(
-                            f"{shown(differ[0])} in {shown(text)} is not one number: runs differ "
-                            f"in it; name an axis, or make {differ[0]} one"
+                            f"{excerpt(differ[0])} in {excerpt(text)} is not one number: runs "
+                            f"differ in it; name an axis, or make {differ[0]} one"
                         )
                     if name in allowed | reserved:
-                        raise ConfigError(f"{shown(name)} has a meaning already; give another name")
+                        raise ConfigError(
+                            f"{excerpt(name)} has a meaning already; give another name"
+                        )
                     if not name.isidentifier():
                         raise ConfigError(
-                            f"{shown(name)} is not a name; give one of letters, digits and _"
+                            f"{excerpt(name)} is not a name; give one of letters, digits and _"
                         )
                     evaluate(text, dict.fromkeys(allowed - {*FIELDS}, np.float64(1.0)))
                 allowed.add(name)
@@ -303,7 +305,7 @@ def _points_of(table: Mapping[str, Any], dimensions: Mapping[str, Axes]) -> Iter
             data: Any = shared
             for key, value in values.items():
                 with problems_within(key):
-                    data = replaced(data, key, value)
+                    data = replace_at(data, key, value)
             run = Run(**data)
         except ConfigError as error:
             for problem in error.problems:
@@ -333,6 +335,6 @@ def _located(problem: Problem, table: Mapping[str, Any], values: Mapping[str, An
     for key, value in values.items():
         is_new_table = key.startswith(f"{problem.field}.") and get(table, problem.field) is None
         if f"{problem.field}.".startswith(f"{key}.") or is_new_table:
-            prefix = "" if shown(value) in problem.message else f"{shown(value)}: "
+            prefix = "" if excerpt(value) in problem.message else f"{excerpt(value)}: "
             return Problem(f"vary.{key}", f"{prefix}{problem.message}")
     return Problem(f"run.{problem.field}".removesuffix("."), problem.message)

@@ -14,7 +14,7 @@ from .initial_guess import first_guess as first_guess
 from .initial_guess import with_force as with_force
 from .law import GapLaw as GapLaw
 from .law import Law as Law
-from .masks import dilated as dilated
+from .masks import dilate as dilate
 from .problem import Adhesive as Adhesive
 from .problem import Depth as Depth
 from .problem import Force as Force

@@ -12,7 +12,7 @@ from pellicle.arrays import Array, Cells, Mask
 from pellicle.grid import Boundary
 
 from .law import Law
-from .masks import dilated, labelled
+from .masks import dilate, label_parts
 
 # Weights of a cell, its two neighbours and the one across the corner at the middle of a quarter of
 # the cell, where the gap is interpolated bilinearly.
@@ -33,10 +33,10 @@ class Attraction:
 
     law: Law
     contact: Mask
-    closed: Mask
+    closed_cells: Mask
     """Cells whose traction no gap reduces."""
     inner: Mask
-    """Cells of `closed` without points, whose energy is that of a closed gap."""
+    """Cells of `closed_cells` without points, whose energy is that of a closed gap."""
     cells: Cells
     """Flat indices of the cells to which a point belongs, (corner, point)."""
     weights: Array
@@ -50,7 +50,7 @@ class Attraction:
     def traction(self) -> Array:
         """Traction on each cell [Pa]; −(strength) within a contact."""
         traction = self._on_cells(self.law.traction(self.gap))
-        traction[self.closed] = -self.law.strength()
+        traction[self.closed_cells] = -self.law.strength()
         return traction
 
     @property
@@ -102,7 +102,7 @@ def attraction(
     """
     near: Mask = contact | (gap < law.cutoff())
     if law.needs_contact:
-        labels, number = labelled(near, boundary, 4)
+        labels, number = label_parts(near, boundary, 4)
         joined = np.zeros(number + 1, dtype=bool)
         joined[labels[contact]] = True
         joined[0] = False
@@ -112,9 +112,9 @@ def attraction(
         cells = np.flatnonzero(near & ~contact)[None]
         values = gap.ravel()[cells[0]]
         return Attraction(law, contact, contact, contact, cells, np.ones(1), values, 1.0)
-    closed = contact & ~dilated(~contact, boundary)
-    inner = closed & ~dilated(~closed, boundary)
-    acting = dilated(near, boundary) & np.isfinite(profile) & ~inner
+    closed = contact & ~dilate(~contact, boundary)
+    inner = closed & ~dilate(~closed, boundary)
+    acting = dilate(near, boundary) & np.isfinite(profile) & ~inner
     corners = np.concatenate(
         [_corners(acting, side, law, profile, boundary) for side in _QUARTERS], 1
     )

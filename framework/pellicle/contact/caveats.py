@@ -220,7 +220,7 @@ class Caveat(NamedTuple):
         return _Sentence(self.values).format(self.status.value)
 
 
-def ranked(caveats: Iterable[Caveat]) -> tuple[Caveat, ...]:
+def rank_caveats(caveats: Iterable[Caveat]) -> tuple[Caveat, ...]:
     """Return the caveats of a step that count, the gravest first.
 
     A failure hides the rest, since the other numbers of the step mean nothing; for the same reason

@@ -185,13 +185,13 @@ class AdhesiveEquilibrium(Equilibrium):
     """An equilibrium in which a law acts across the gap."""
 
     problem: Adhesive
-    solved: State
+    solver_state: State
     """The state that the solver found."""
 
     @property
     def wall(self) -> Array:
         """Wall pressure [Pa]."""
-        return self.solved.wall
+        return self.solver_state.wall
 
     @cached_property
     def counted_contact(self) -> Mask:
@@ -266,7 +266,7 @@ class AdhesiveEquilibrium(Equilibrium):
     @property
     def _base_without_contact(self) -> float:
         return (
-            self.solved.depth
+            self.solver_state.depth
             if self.problem.prescribed == "force"
             else super()._base_without_contact
         )

@@ -11,7 +11,7 @@ import numpy as np
 
 from pellicle.arrays import Array
 
-from .caveats import Caveat, ranked
+from .caveats import Caveat, rank_caveats
 from .equilibrium import Deformation
 from .moved_front import moved_on
 from .problem import Adhesive, Depth, Unilateral
@@ -52,14 +52,14 @@ class LoadStep(Generic[Surface]):
     response: tuple[Array, float] | None = None
     """dp/dδ [Pa/m] and dF/dδ [N/m] of the contact, once known; of an infinite one any multiple."""
     caveats: tuple[Caveat, ...] = ()
-    """Caveats of the step, `ranked`."""
+    """Caveats of the step, sorted by `rank_caveats`."""
 
     @property
     def converged(self) -> bool:
         """Whether the numbers of the step may be used, possibly with a caveat."""
         return all(caveat.status.converged for caveat in self.caveats)
 
-    def having(
+    def with_measures(
         self,
         measures: Mapping[str, Value],
         caveats: Iterable[Caveat] = (),
@@ -70,7 +70,7 @@ class LoadStep(Generic[Surface]):
             self,
             measures={**self.measures, **measures},
             fields={**self.fields, **(fields or {})},
-            caveats=ranked((*self.caveats, *caveats)),
+            caveats=rank_caveats((*self.caveats, *caveats)),
         )
 
 

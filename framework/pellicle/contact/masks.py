@@ -13,7 +13,7 @@ from pellicle.grid import Boundary
 Labels = NDArray[np.int64]
 
 
-def dilated(mask: Mask, boundary: Boundary = "periodic", cells: int = 1) -> Mask:
+def dilate(mask: Mask, boundary: Boundary = "periodic", cells: int = 1) -> Mask:
     """Return the cells of ``mask`` and those up to ``cells`` away along each axis.
 
     Cells across a corner are neighbours too. The mask has one or more axes; `scipy.ndimage` has no
@@ -33,7 +33,7 @@ def dilated(mask: Mask, boundary: Boundary = "periodic", cells: int = 1) -> Mask
     return mask
 
 
-def labelled(mask: Mask, boundary: Boundary, connectivity: Literal[4, 8]) -> tuple[Labels, int]:
+def label_parts(mask: Mask, boundary: Boundary, connectivity: Literal[4, 8]) -> tuple[Labels, int]:
     """Return the connected part of each cell, counted from 1, and the number of parts.
 
     Cells outside ``mask`` have the label 0. On a periodic grid parts that meet across the edge of

@@ -14,7 +14,7 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Grid
 
-from .masks import labelled
+from .masks import label_parts
 from .solution import Solution, State, Stop
 
 # Cells along the front over which its shift is averaged: a lattice gives each front to half a cell.
@@ -71,7 +71,7 @@ def is_on_path(solution: Solution, grid: Grid) -> bool:
 
 def _has_one_edge(contact: Mask, grid: Grid) -> bool:
     """Return whether a contact is one patch without holes that does not fill the domain."""
-    patches = labelled(contact, grid.boundary, 4)[1], labelled(~contact, grid.boundary, 8)[1]
+    patches = label_parts(contact, grid.boundary, 4)[1], label_parts(~contact, grid.boundary, 8)[1]
     return patches == (1, 1)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Boundary
 
-from .masks import labelled
+from .masks import label_parts
 
 _OPENING = 0.15
 """Opening of an end, over the bend of the surface at its edge, that may be the cells'."""
@@ -39,14 +39,14 @@ def with_ends(
 
     mode = "wrap" if boundary == "periodic" else "nearest"
     lines = (minimum_filter(smooth[axis], (1, 3)[:: 1 - 2 * axis], mode=mode) for axis in (0, 1))
-    blocks, count = labelled(np.logical_and(*lines), boundary, 8)
+    blocks, count = label_parts(np.logical_and(*lines), boundary, 8)
     ends, numbers = maximum_filter(blocks, 3, mode=mode), np.arange(1, count + 1)
     edge, own = (
         np.asarray(maximum(field, labels, numbers))
         for field, labels in ((bent, ends), (bends.max(axis=0), blocks))
     )
     allowed = np.append(0.0, np.where(own <= _SMOOTH * edge, _OPENING * edge, 0.0))[ends]
-    parts, count = labelled(~contact & (allowed > 0), boundary, 4)
+    parts, count = label_parts(~contact & (allowed > 0), boundary, 4)
     opens = np.append(True, maximum(gap > allowed, parts, np.arange(1, count + 1)))
     counted: Mask = contact | ~opens[parts]
     return counted

@@ -41,7 +41,7 @@ def depend_on_wave(branches: Iterable[Branch]) -> bool:
     return any(callable(branch.time) for branch in branches)
 
 
-def relax_alike(first: Sequence[Branch], second: Sequence[Branch]) -> bool:
+def have_equal_branches(first: Sequence[Branch], second: Sequence[Branch]) -> bool:
     """Return whether two solids have the same branches, as far as times at some waves tell."""
     q = np.geomspace(1e-3, 1e12, 31)
     return len(first) == len(second) and all(

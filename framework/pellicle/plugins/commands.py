@@ -20,7 +20,17 @@ import typer
 from pellicle.errors import ConfigError, PellicleError, PluginError
 
 from .hooks import manager_of
-from .origins import COMMAND, DISABLE, GROUP, REMEDY, Broken, Origin, claimed_by, in_order, isolated
+from .origins import (
+    COMMAND,
+    DISABLE,
+    GROUP,
+    REMEDY,
+    BrokenPlugin,
+    Origin,
+    call_isolated,
+    claimed_by,
+    in_order,
+)
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -49,21 +59,21 @@ def commands() -> Mapping[str, Sequence[EntryPoint]]:
             claims.setdefault(name, []).append(entry)
     for entries in claims.values():
         if len(entries) > 1:
-            entries.sort(key=lambda entry: not Origin.of(entry).is_own)
+            entries.sort(key=lambda entry: not Origin.of(entry).is_built_in)
     return claims
 
 
 @cache
-def load_command(name: str) -> Command | Broken:
+def load_command(name: str) -> Command | BrokenPlugin:
     """Return a command, or why it cannot be used.
 
     Of several plugins that claim it none is used, and beside pellicle itself none either.
     """
     first, *others = commands()[name]
-    if others and not Origin.of(first).is_own:
+    if others and not Origin.of(first).is_built_in:
         claim = claimed_by(map(Origin.of, (first, *others)))
-        return Broken(Origin.of(first), f"{claim}; {REMEDY}")
-    return isolated(first, partial(_loaded, first))
+        return BrokenPlugin(Origin.of(first), f"{claim}; {REMEDY}")
+    return call_isolated(first, partial(_loaded, first))
 
 
 def _loaded(entry: EntryPoint) -> Command:
@@ -91,13 +101,13 @@ def usable_commands() -> Mapping[str, Command]:
 
 
 def typer_command(name: str, **options: Any) -> Any:
-    """Return what typer makes of a command, with options of `typer.Typer.command`; or `Broken`."""
+    """Return what typer makes of a command, with options of `Typer.command`; or `BrokenPlugin`."""
     command = load_command(name)
-    if isinstance(command, Broken):
+    if isinstance(command, BrokenPlugin):
         return command
     app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
     app.command(name, **options)(command.function)
-    return isolated(commands()[name][0], partial(typer.main.get_command, app))
+    return call_isolated(commands()[name][0], partial(typer.main.get_command, app))
 
 
 @contextmanager
@@ -108,24 +118,24 @@ def errors_attributed_to(name: str) -> Iterator[None]:
     except (PellicleError, typer.Exit, typer.Abort):
         raise
     except Exception as error:
-        if not (origin := Origin.of(commands()[name][0])).is_own:
+        if not (origin := Origin.of(commands()[name][0])).is_built_in:
             error.add_note(f"command {name!r} of {origin} failed")
         raise
 
 
-def file_models() -> Mapping[str, type[BaseModel] | Broken]:
+def file_models() -> Mapping[str, type[BaseModel] | BrokenPlugin]:
     """Return the model of the file of each command that takes one, or why it cannot be used.
 
     A broken command might take one.
     """
-    models: dict[str, type[BaseModel] | Broken] = {}
+    models: dict[str, type[BaseModel] | BrokenPlugin] = {}
     for name in commands():
         command = load_command(name)
-        if isinstance(command, Broken):
+        if isinstance(command, BrokenPlugin):
             models[name] = command
         elif command.file:
-            model = isolated(commands()[name][0], partial(_model, command.file))
-            if isinstance(model, Broken):
+            model = call_isolated(commands()[name][0], partial(_model, command.file))
+            if isinstance(model, BrokenPlugin):
                 model = replace(model, error=f"file {command.file!r}: {model.error}")
             models[name] = model
     return models
@@ -148,7 +158,7 @@ def refuse_file_of_another(model: type[BaseModel], keys: Set[str]) -> None:
     others = {
         name: other
         for name, other in (file_models() if keys - model.model_fields.keys() else {}).items()
-        if not isinstance(other, Broken)
+        if not isinstance(other, BrokenPlugin)
         and all(key in keys for key, info in other.model_fields.items() if info.is_required())
     }
     known = {name: other.model_fields.keys() & keys for name, other in others.items()}

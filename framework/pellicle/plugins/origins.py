@@ -45,7 +45,7 @@ class Origin:
         return cls(entry.name, *_name_and_version(entry.dist))
 
     @property
-    def is_own(self) -> bool:
+    def is_built_in(self) -> bool:
         """Whether it is a part of pellicle."""
         return self.distribution == "pellicle"
 
@@ -54,7 +54,7 @@ class Origin:
 
 
 @dataclass(frozen=True)
-class Broken:
+class BrokenPlugin:
     """A plugin that cannot be used, and the error."""
 
     origin: Origin
@@ -74,13 +74,13 @@ def in_order(entries: Iterable[EntryPoint], disable: str) -> Iterator[tuple[Entr
     named = {_same(name) for name in disable.split(",")} - {""}
     for entry in sorted(set(entries), key=lambda entry: (entry.name, entry.value)):
         is_off = False
-        if named and not (origin := Origin.of(entry)).is_own:
+        if named and not (origin := Origin.of(entry)).is_built_in:
             names = _same(origin.distribution), _same(origin.entry_point)
             is_off = not named.isdisjoint({"1", "true", "all", *names})
         yield entry, is_off
 
 
-def isolated(entry: EntryPoint, load: Callable[[], Loaded]) -> Loaded | Broken:
+def call_isolated(entry: EntryPoint, load: Callable[[], Loaded]) -> Loaded | BrokenPlugin:
     """Return what a function that runs code of the plugin of an entry point returns, or the error.
 
     Parsers of arguments and checks of licences call sys.exit(). What the plugin prints goes to
@@ -91,7 +91,7 @@ def isolated(entry: EntryPoint, load: Callable[[], Loaded]) -> Loaded | Broken:
             return load()
     except (Exception, SystemExit) as error:
         kind = "" if isinstance(error, PluginError) else f"{type(error).__name__}: "
-        return Broken(Origin.of(entry), f"{kind}{error}".removesuffix(": "))
+        return BrokenPlugin(Origin.of(entry), f"{kind}{error}".removesuffix(": "))
 
 
 @cache

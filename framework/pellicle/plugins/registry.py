@@ -16,13 +16,22 @@ from functools import cache, cached_property, partial
 from importlib.metadata import EntryPoint, PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args, get_origin
 
-from pellicle.errors import ConfigError, PellicleError, PluginError, shown
+from pellicle.errors import ConfigError, PellicleError, PluginError, excerpt
 from pellicle.schema.messages import nearest
 from pellicle.units import quantity_of
 
 from .component import Component
 from .hooks import manager_of
-from .origins import COMMAND, DISABLE, REMEDY, Broken, Origin, claimed_by, in_order, isolated
+from .origins import (
+    COMMAND,
+    DISABLE,
+    REMEDY,
+    BrokenPlugin,
+    Origin,
+    call_isolated,
+    claimed_by,
+    in_order,
+)
 
 if TYPE_CHECKING:
     from pellicle.components import Suite
@@ -32,7 +41,7 @@ _version = cache(version)
 
 
 @dataclass(frozen=True)
-class Registered:
+class InstalledComponent:
     """An installed component."""
 
     component: type[Component]
@@ -54,11 +63,11 @@ class Registered:
 class Registry:
     """All components by family and type, all validation suites, and broken plugins."""
 
-    components: Mapping[str, Mapping[str, Registered]]
+    components: Mapping[str, Mapping[str, InstalledComponent]]
     families: Mapping[str, type[Component]]
     """The base class of each family, by name: pellicle's own, then those that plugins bring."""
     suites: tuple[Suite, ...] = ()
-    broken: tuple[Broken, ...] = ()
+    broken: tuple[BrokenPlugin, ...] = ()
     clashes: Mapping[tuple[str, str], tuple[Origin, ...]] = field(default_factory=dict)
     """Types claimed by more than one plugin; none of the claimants is in `components`."""
     disabled: tuple[Origin, ...] = ()
@@ -67,7 +76,7 @@ class Registry:
     def own(self) -> frozenset[type[Component]]:
         """The classes of the components that pellicle ships."""
         entries = (entry for family in self.components.values() for entry in family.values())
-        return frozenset(entry.component for entry in entries if entry.origin.is_own)
+        return frozenset(entry.component for entry in entries if entry.origin.is_built_in)
 
     def find(self, family: str, type_: object) -> type[Component]:
         """Return the class of a component, or raise an error that says why there is none."""
@@ -93,7 +102,7 @@ class Registry:
         near = [name for name, known in types.items() if word in known.component.also]
         synonyms = f"what comes nearest is {' or '.join(map(repr, near))}. " if near else ""
         raise ConfigError(
-            f"{shown(type_)} is not {article} {family}; {synonyms}{nearest(type_, types)}{hint}",
+            f"{excerpt(type_)} is not {article} {family}; {synonyms}{nearest(type_, types)}{hint}",
             "type",
         )
 
@@ -129,7 +138,7 @@ class Registry:
         if "type" not in table and base.family in self.components:
             listing = ", ".join(sorted(self.components[base.family]))
             is_table = isinstance(value, Mapping)
-            reason = "has no type" if is_table else f"{shown(value)} is not a table"
+            reason = "has no type" if is_table else f"{excerpt(value)} is not a table"
             raise ConfigError(f"{reason}; give a table with type = one of: {listing}")
         component = self.find(base.family, table.get("type"))
         if not issubclass(component, base):
@@ -154,10 +163,10 @@ def load(
     commands are skipped. ``disable`` is the value of the environment variable `DISABLE`. No plugin
     can take the name of a ``known`` family, of which the base class is given.
     """
-    claims: dict[tuple[str, str], list[Registered]] = {}
+    claims: dict[tuple[str, str], list[InstalledComponent]] = {}
     families = dict(known)
     suites: list[Suite] = []
-    broken: list[Broken] = []
+    broken: list[BrokenPlugin] = []
     disabled: list[Origin] = []
     for entry, is_off in in_order(entries, disable):
         if is_off:
@@ -165,8 +174,8 @@ def load(
             continue
         if entry.name.startswith(COMMAND):
             continue
-        registration = isolated(entry, partial(_call_hooks, entry, families))
-        if isinstance(registration, Broken):
+        registration = call_isolated(entry, partial(_call_hooks, entry, families))
+        if isinstance(registration, BrokenPlugin):
             broken.append(registration)
             continue
         components, its_suites = registration
@@ -176,7 +185,7 @@ def load(
             # Two entry points of a package may name the same module.
             if not any(owner.component is registered.component for owner in owners):
                 owners.append(registered)
-    registered_by_family: dict[str, dict[str, Registered]] = {f: {} for f in families}
+    registered_by_family: dict[str, dict[str, InstalledComponent]] = {f: {} for f in families}
     clashes: dict[tuple[str, str], tuple[Origin, ...]] = {}
     for (family, type_), owners in claims.items():
         if len(owners) == 1:
@@ -190,13 +199,13 @@ def load(
 
 def _call_hooks(
     entry: EntryPoint, families: dict[str, type[Component]]
-) -> tuple[list[Registered], list[Suite]]:
+) -> tuple[list[InstalledComponent], list[Suite]]:
     """Return the components and suites that one plugin registers, and add its families."""
-    components: list[Registered] = []
+    components: list[InstalledComponent] = []
     suites: list[Suite] = []
 
     def register(component: type[Component]) -> None:
-        components.append(Registered(component, checked_type(component), Origin.of(entry)))
+        components.append(InstalledComponent(component, checked_type(component), Origin.of(entry)))
 
     def register_suite(suite: Suite) -> None:
         if not callable(suite):

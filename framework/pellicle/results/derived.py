@@ -12,7 +12,7 @@ from pellicle.arrays import DataArray, Dataset
 from pellicle.errors import ConfigError
 from pellicle.schema.expression import evaluate, names_in
 from pellicle.schema.model import walk
-from pellicle.units import one, si_unit
+from pellicle.units import si_unit, unit_quantity
 
 CELLS = ["x", "y"]
 """Dimensions of a field."""
@@ -90,7 +90,7 @@ def _unit_of(text: str, units: Mapping[str, str]) -> str:
     try:
         for name in names_in(text):
             # An exponent that varies, so that a power has no unit, is NaN here.
-            quantities[name] = math.nan * one(units.get(name, "1"))
+            quantities[name] = math.nan * unit_quantity(units.get(name, "1"))
         return si_unit(evaluate(text, quantities))
     except (ConfigError, ValueError):
         # Units that differ, or that of a stranger's variable that pint does not know.

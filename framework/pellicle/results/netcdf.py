@@ -24,7 +24,7 @@ _DIMENSION_ATTRIBUTES = {
 }
 
 
-def serialised(
+def serialise(
     dataset: xr.Dataset, *, grows: Collection[str] = (), packed: Collection[str] = ()
 ) -> io.BytesIO:
     """Return a dataset of numbers, truth values and texts as a NetCDF-4 file in memory.

@@ -11,7 +11,7 @@ import numpy as np
 
 from pellicle.analysis import Oscillation, oscillations, path_summary
 from pellicle.arrays import DataArray, Dataset
-from pellicle.contact.caveats import Caveat, Status, from_text, ranked, to_text
+from pellicle.contact.caveats import Caveat, Status, from_text, rank_caveats, to_text
 from pellicle.grid import Grid
 from pellicle.units import DIGITS, readable
 from pellicle.variables import CAVEATS, VARIABLES
@@ -125,7 +125,7 @@ def with_events(steps: Dataset) -> Dataset:
         # Texts that were read from a file have a fixed length.
         caveats = steps[CAVEATS].astype(object)
         others = (c for c in from_text(caveats.values[index]) if c.status is not caveat.status)
-        caveats.values[index] = to_text(ranked([*others, caveat]))
+        caveats.values[index] = to_text(rank_caveats([*others, caveat]))
         steps = steps.assign({CAVEATS: caveats})
     return steps
 

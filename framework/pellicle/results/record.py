@@ -127,7 +127,7 @@ class Steps:
         )
         return step
 
-    def joined(self) -> xr.Dataset:
+    def join_steps(self) -> xr.Dataset:
         """Return all steps as one dataset; no step can be appended afterwards."""
         columns = {name: field[: len(self)] for name, field in self._fields.items()}
         for name, first in self._numbers[0].items():

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pellicle.arrays import DataArray, Dataset
 from pellicle.contact.caveats import Status
-from pellicle.errors import ConfigError, StorageError, shown
+from pellicle.errors import ConfigError, StorageError, excerpt
 from pellicle.schema.expression import evaluate, names_in
 from pellicle.variables import FIELDS, WALL_PRESSURE
 
@@ -74,7 +74,7 @@ class StoredRuns:
             value = evaluate(text, names(run), REDUCTIONS)
             if set(getattr(value, "dims", ())) & set(CELLS):
                 raise ConfigError(
-                    f"{shown(text)} has a value for each cell instead of each step; put fields, "
+                    f"{excerpt(text)} has a value for each cell instead of each step; put fields, "
                     f"x and y inside {', '.join(REDUCTIONS)}, such as mean(pressure)"
                 )
             return value

@@ -52,7 +52,7 @@ def status_of_run(result: Result) -> tuple[str, bool | None, list[str]]:
     return " ".join(sentences), is_good if done == total and not failed else False, details
 
 
-def unfinished(result: Result) -> str:
+def interruption_note(result: Result) -> str:
     """Return how far an interrupted run came; empty if it is whole."""
     done, planned = result.dataset.sizes["step"], result.planned_steps
     return f"interrupted: {done} of {planned} steps are finished; run it again" * (done < planned)

@@ -16,7 +16,7 @@ from pellicle.contact.caveats import from_text, verdict_of
 from pellicle.variables import CAVEATS, VARIABLES, names_of
 
 from .path import has_load, oscillations_of, path_variables, prescribed_variable
-from .wording import column_of, means_something
+from .wording import column_of, has_meaning
 
 _OF_PATH = "pull_off", "pull_off_accuracy", "detach", "jump_in", "work", "dissipated_energy"
 """Variables of the path of a run that has just been solved, for the terminal."""
@@ -62,7 +62,7 @@ def is_shown(data: Dataset, name: str) -> bool:
 
     Without a finite force the variables of a step stay in the table.
     """
-    if not means_something(data, name):
+    if not has_meaning(data, name):
         return False
     missing = not np.isfinite(data[name].values.astype(float)).any()
     return not missing or not np.isfinite(data["force"].values).any()
@@ -110,7 +110,7 @@ def contact(data: Dataset) -> Table:
     Under a load it is that of the surface.
     """
     kinds = names_of("contact", "interaction", "load")
-    names = [name for name in kinds if name in data and means_something(data, name)]
+    names = [name for name in kinds if name in data and has_meaning(data, name)]
     return steps(data, [name for name in names if not name.startswith("residual_")])
 
 

@@ -46,7 +46,7 @@ def write(dataset: xr.Dataset, path: Path) -> None:
     grows = ["step"] if fields and path.suffix != ".tail" else []
     with atomic_write(path) as part:
         versioned = dataset.assign_attrs(schema_version=SCHEMA_VERSION)
-        _save(netcdf.serialised(versioned, grows=grows, packed=fields), part)
+        _save(netcdf.serialise(versioned, grows=grows, packed=fields), part)
         # The segments are removed before the old file is replaced: they must not continue the new.
         for segment in _segments(path):
             segment.unlink()
@@ -62,7 +62,7 @@ def remove(path: Path) -> None:
 def append(dataset: xr.Dataset, path: Path) -> None:
     """Add the steps of ``dataset`` to the result that `write` began."""
     first, *segments = _parts(path)
-    with opened(first) as file:
+    with open_file(first) as file:
         identity, own = _attributes_of(file).get("identity"), file["step"][:].tolist()
     waiting = [number for segment in segments for number in _step_numbers(segment)]
     last, following = (own + waiting)[-1], int(dataset["step"].values[0])
@@ -93,22 +93,22 @@ def read(path: Path, without: Collection[str] = ()) -> xr.Dataset:
         segments, steps = _segments(path), []
         try:
             for part in _parts(path):
-                with opened(part) as file:
+                with open_file(part) as file:
                     steps.append(_content(file, without))
         except StorageError:
             if _segments(path) == segments:
                 raise
         else:
-            return joined(steps)
+            return join_steps(steps)
 
 
 def attributes(path: Path, kind: _Kind = "result") -> dict[str, Any]:
     """Return the attributes of a result file without reading its steps."""
-    with opened(path, kind) as file:
+    with open_file(path, kind) as file:
         return _attributes_of(file)
 
 
-def joined(steps: list[xr.Dataset]) -> xr.Dataset:
+def join_steps(steps: list[xr.Dataset]) -> xr.Dataset:
     """Return datasets of consecutive steps as one.
 
     The list is emptied, so that only one field at a time is in memory twice.
@@ -137,12 +137,12 @@ def joined(steps: list[xr.Dataset]) -> xr.Dataset:
 
 def table(path: Path) -> xr.Dataset:
     """Return the table of a study."""
-    with opened(path, "table") as file:
+    with open_file(path, "table") as file:
         return _content(file)
 
 
 def _step_numbers(path: Path) -> list[int]:
-    with opened(path) as file:
+    with open_file(path) as file:
         numbers: list[int] = file["step"][:].tolist()
         return numbers
 
@@ -179,7 +179,7 @@ def _join(path: Path, segments: Sequence[Path], *more: xr.Dataset) -> None:
     with h5py.File(grown, "r+") as file:
         names = [name for name in file if file[name].maxshape[:1] == (None,)]
         for segment in segments:
-            with opened(segment) as source:
+            with open_file(segment) as source:
                 _extend(file, {name: source[name] for name in names})
         for steps in more:
             _extend(file, {name: steps[name].values for name in names})
@@ -206,7 +206,7 @@ def _extend(file: h5py.File, values: Mapping[str, Any]) -> None:
 
 
 @contextmanager
-def opened(path: Path, kind: _Kind = "result") -> Iterator[h5py.File]:
+def open_file(path: Path, kind: _Kind = "result") -> Iterator[h5py.File]:
     """Yield the HDF5 file of a result, of the table of a study or of a command, for reading."""
     if not is_file(path):
         reason = "no such file; give a result file (.h5) that pellicle wrote"

@@ -54,7 +54,7 @@ def is_periodic(data: Dataset) -> bool:
     return bool(data.attrs["boundary"] == "periodic")
 
 
-def means_something(data: Dataset, name: str) -> bool:
+def has_meaning(data: Dataset, name: str) -> bool:
     """Return whether a variable has a meaning for the contacts of a result or of a study.
 
     A contact in several parts has neither radius nor ellipse, and a round one no axes besides its

@@ -61,7 +61,7 @@ def compose(run: Run) -> Setting:
 
 def compose_load(run: Run, load: Load) -> list[Traction]:
     """Return what each step of a run with a load poses."""
-    operator, distinct = _operator(run), run.steps if load.varied else 1
+    operator, distinct = _operator(run), run.steps if load.varying_field else 1
     tractions = [traction_of(load.at(index), run.grid) for index in range(distinct)]
     _warn_of_liquid(run)
     steps = [Traction(run.grid, operator, traction) for traction in tractions]

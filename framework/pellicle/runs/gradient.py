@@ -17,7 +17,7 @@ from pellicle.contact.equilibrium import AdhesiveEquilibrium, Equilibrium
 from pellicle.contact.load_step import LoadStep
 from pellicle.contact.problem import Adhesive
 from pellicle.contact.solution import State, Stop
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, excerpt
 from pellicle.results.result import Result
 from pellicle.variables import CAVEATS, COORDINATES, WALL_PRESSURE
 
@@ -48,7 +48,7 @@ def gradient(result: Result, *, by: str | Sequence[str]) -> xr.Dataset:
         no derivative.
     """
     if not isinstance(result, Result):
-        raise ConfigError(f"{shown(result)} is not a result; give that of pellicle.run", "result")
+        raise ConfigError(f"{excerpt(result)} is not a result; give that of pellicle.run", "result")
     paths = [by] if isinstance(by, str) else [*by]
     run = Run.from_mapping(result.configuration | {"gradient": paths})
     setting, data, loading = compose(run), result.dataset, run.indentation.loading

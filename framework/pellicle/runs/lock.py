@@ -17,7 +17,7 @@ class LockedError(StorageError):
 
 
 @contextmanager
-def locked(folder: Path, name: str, *, wait: bool = False) -> Iterator[None]:
+def lock_files(folder: Path, name: str, *, wait: bool = False) -> Iterator[None]:
     """Lock the files in ``folder`` that begin with ``name``; ``wait`` for another process or raise.
 
     The lock is one of the operating system, so it ends with the process; its file is removed.

@@ -41,7 +41,7 @@ def memory_of(run: Run) -> float:
     iterating = 0.0 if run.load else solver.arrays(grid) + (_STICKS if run.interaction else 0.0)
     history = history_arrays(run)
     records = (_STEP + _SERIALISED) * (run.steps - 1)
-    if run.load and run.load.varied:
+    if run.load and run.load.varying_field:
         # The tractions of all steps but the first, which has the place of an indenter.
         records += run.steps - 1
     for path in run.gradient or ():

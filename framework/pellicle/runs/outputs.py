@@ -14,7 +14,7 @@ from pellicle.components import Output, Runs
 from pellicle.components.installed import registry
 from pellicle.config.file_names import stem_of
 from pellicle.config.run import Run
-from pellicle.errors import ConfigError, PluginError, shown
+from pellicle.errors import ConfigError, PluginError, excerpt
 from pellicle.show.saving import write_charts
 
 from .journal import Journal
@@ -34,7 +34,7 @@ def hand_over(
             output.step(read_only_dataset(step), stem_of(output, journal.stem))
 
     calls = [partial(give, output) for output in outputs]
-    all_done([partial(journal.append, step), *calls] if is_new else calls)
+    call_all([partial(journal.append, step), *calls] if is_new else calls)
 
 
 def writers(
@@ -56,7 +56,7 @@ def writers(
     return [partial(write, output) for output in outputs]
 
 
-def all_done(calls: Iterable[Callable[[], Value]]) -> list[Value]:
+def call_all(calls: Iterable[Callable[[], Value]]) -> list[Value]:
     """Call all functions, even if one raises; return the values, or raise the first exception."""
     values: list[Value] = []
     errors: list[Exception] = []
@@ -88,7 +88,7 @@ def files_of(output: Output, runs: Runs, stem: Path) -> tuple[Path, ...]:
     call = f"{component_name(output)}: write(runs, stem) returned"
     if not isinstance(files, (tuple, list)) or not all(isinstance(path, Path) for path in files):
         raise PluginError(
-            f"{call} {shown(files)}; it has to return a tuple of pathlib.Path, empty if there is "
+            f"{call} {excerpt(files)}; it has to return a tuple of pathlib.Path, empty if there is "
             "none"
         )
     for path in files:

@@ -30,7 +30,7 @@ class ProgressMessage(NamedTuple):
     iteration: int
     residual_ratio: float
     """Residual over the tolerance."""
-    done: float
+    progress: float
     """Number of finished steps, plus the finished share of the current one."""
 
 
@@ -99,13 +99,13 @@ class RunProgress(_Progress):
             assert self._bars
             self._bars.update(
                 self._task,
-                completed=message.done,
+                completed=message.progress,
                 description=f"step {message.step + 1}/{message.steps}",
                 message=f"iteration {message.iteration} "
                 f"residual {message.residual_ratio:.1e} × tolerance",
             )
 
-        show = reporting(index, self._steps, update)
+        show = progress_monitor(index, self._steps, update)
 
         def monitor(iteration: int, residual_ratio: float) -> None:
             """Show or report an iteration."""
@@ -162,9 +162,9 @@ class BatchProgress(_Progress):
             task_id, _ = self._running[task.name]
         else:
             task_id = self._bars.add_task(f"  {task.name}", total=float(message.steps), message="")
-        self._running[task.name] = task_id, message.done / message.steps
+        self._running[task.name] = task_id, message.progress / message.steps
         where = f"step {message.step + 1}/{message.steps} iteration {message.iteration}"
-        self._bars.update(task_id, completed=message.done, message=where)
+        self._bars.update(task_id, completed=message.progress, message=where)
         self._advance()
 
     def finished(self, task: Task, verdict: str, failed: bool) -> None:
@@ -197,7 +197,7 @@ class BatchProgress(_Progress):
         return f"{self._done - self._failed} done, {self._failed} failed, {left} left"
 
 
-def reporting(index: int, steps: int, show: Callable[[ProgressMessage], None]) -> Monitor:
+def progress_monitor(index: int, steps: int, show: Callable[[ProgressMessage], None]) -> Monitor:
     """Return a monitor of a load step that passes its progress on, at most ten times a second."""
     highest, shown_at = 1.0, 0.0
 

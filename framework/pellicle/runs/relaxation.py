@@ -143,7 +143,7 @@ class _Waves:
         """Return the operator of a step, and its factors over those of the solid at once."""
         operator = self._operator
         if duration:
-            operator = operator_of(stiffened(self._run.kernel, duration), self._run.grid)
+            operator = operator_of(stiffen(self._run.kernel, duration), self._run.grid)
         # A mean that is not displaced has a compliance of 0.
         nothing = np.zeros_like(self._solid)
         return operator, np.divide(
@@ -196,7 +196,7 @@ class _Pressures:
         if self._of_length is None or self._of_length[0] != duration:
             # The last one goes before the next is made.
             self._of_length = None
-            stiffer = stiffened(self._kernel, duration).compliance(self._waves)
+            stiffer = stiffen(self._kernel, duration).compliance(self._waves)
             operator = self._few.interpolated(stiffer / self._kernel.compliance(self._waves))
             self._of_length = duration, operator
         return self._of_length[1]
@@ -206,7 +206,7 @@ def _rounded(duration: float) -> float:
     return float(f"{duration:.{_DIGITS}g}")
 
 
-def stiffened(kernel: Kernel, duration: float) -> Kernel:
+def stiffen(kernel: Kernel, duration: float) -> Kernel:
     """Return the elastic kernel of a step of ``duration`` [s]: γ times the solid under its skin."""
     branches = branches_of(kernel)
     if depend_on_wave(branches):
@@ -226,7 +226,7 @@ def responses(
     solid, whole = kernel.without_skin().compliance(q), kernel.compliance(q)
     history = History.at_rest(branches, (len(sources), q.size))
     for index, duration in enumerate(durations):
-        step, operator = TimeStep.of(branches, duration, q), stiffened(kernel, duration)
+        step, operator = TimeStep.of(branches, duration, q), stiffen(kernel, duration)
         compliance = operator.compliance(q)
         displacement = history.residual(step) * (-compliance / solid)
         if index in sources:

@@ -28,9 +28,9 @@ from pellicle.results.runs import StoredRuns
 
 from .compose import compose, compose_load
 from .journal import Journal
-from .lock import locked
+from .lock import lock_files
 from .memory_estimate import memory_of
-from .outputs import all_done, hand_over, standard_outputs, writers
+from .outputs import call_all, hand_over, standard_outputs, writers
 from .progress import Bar, Report, RunProgress
 from .solve import solve_steps
 
@@ -108,7 +108,7 @@ def solve(run: Run) -> Result:
     return execute(run, None, (), bar, inner=True).result
 
 
-class Executed(NamedTuple, Generic[Outcome]):
+class RunOutcome(NamedTuple, Generic[Outcome]):
     """The outcome of a run, or of a study, whose result is its table."""
 
     result: Outcome
@@ -126,7 +126,7 @@ def execute(
     *,
     threads: int | None = None,
     inner: bool = False,
-) -> Executed[Result]:
+) -> RunOutcome[Result]:
     """Solve the load steps that ``journal`` lacks and write the outputs beside it.
 
     After an interruption the outputs still show the finished steps. Without a journal nothing is
@@ -149,7 +149,7 @@ def execute(
             composed = compose_load(run, run.load) if run.load else compose(run)
             solved = solve_steps(run, composed, steps, monitor_of)
             if journal:
-                stack.enter_context(locked(journal.stem.parent, journal.stem.name))
+                stack.enter_context(lock_files(journal.stem.parent, journal.stem.name))
                 for step in journal.resume():
                     hand_over(steps.append(step), outputs, journal)
             resumed = len(steps)
@@ -164,11 +164,11 @@ def execute(
             ) from None
         finally:
             if steps:
-                result = Result(with_events(steps.joined()))
+                result = Result(with_events(steps.join_steps()))
                 if journal:
                     calls = [journal.close, *writers(outputs, runs, journal.stem, run)]
-                    files = tuple(chain(*all_done(calls)))
-    return Executed(result, files, resumed)
+                    files = tuple(chain(*call_all(calls)))
+    return RunOutcome(result, files, resumed)
 
 
 def default_threads(grid: Grid) -> int:

@@ -29,10 +29,10 @@ from .target_search import search_target
 from .terms import AnyStep, AroundContact, ContactStep, Step, Surroundings, Term
 from .terms.adhesion import adhesion
 from .terms.contact import contact
+from .terms.extra_measures import corrections, prescription, stiffness
 from .terms.gradient import Gradient
 from .terms.layer import layer
 from .terms.relaxation import relaxation
-from .terms.requested import corrections, prescription, stiffness
 from .terms.surface import surface
 
 

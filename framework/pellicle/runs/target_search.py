@@ -55,7 +55,7 @@ def search_target(setting: Setting, search: Search, solve: Solve, tolerance: flo
     if jumps := below < 0 < above:
         brentq(trials, low, high, xtol=search.width, rtol=1e-15)
     step = replace(trials.nearest, iterations=trials.iterations, missed=trials.missed)
-    return step.having({}, _not_met(trials, tolerance, jumps=jumps))
+    return step.with_measures({}, _not_met(trials, tolerance, jumps=jumps))
 
 
 def _not_met(trials: _Trials, tolerance: float, *, jumps: bool) -> Iterator[Caveat]:

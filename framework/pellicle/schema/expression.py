@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, excerpt
 
 from .messages import nearest
 
@@ -101,7 +101,7 @@ def evaluate(
     count = iter(range(len(dotted)))
     code = _NAME.sub(lambda _: f"_{next(count)}", text).strip()
     if sum(map(code.count, "+-*/(")) > _LONGEST:
-        raise ConfigError(f"{shown(text)} has more than {_LONGEST} operations; give fewer")
+        raise ConfigError(f"{excerpt(text)} has more than {_LONGEST} operations; give fewer")
     try:
         # Python takes letters for names that are none in a regular expression, such as ℘.
         code.encode("ascii")
@@ -112,7 +112,7 @@ def evaluate(
             warnings.simplefilter("ignore", SyntaxWarning)
             tree = ast.parse(code, mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise ConfigError(f"{shown(text)} is not arithmetic; write it with {_ALLOWED}") from None
+        raise ConfigError(f"{excerpt(text)} is not arithmetic; write it with {_ALLOWED}") from None
 
     def value(node: ast.AST) -> Any:
         match node:
@@ -124,7 +124,9 @@ def evaluate(
                 return np.float64(number)
             case ast.Name(id=place):
                 if (name := dotted[int(place[1:])]) not in values:
-                    raise ConfigError(f"{shown(name)} in {shown(text)}: {nearest(name, values)}")
+                    raise ConfigError(
+                        f"{excerpt(name)} in {excerpt(text)}: {nearest(name, values)}"
+                    )
                 return values[name]
             case ast.UnaryOp(op=op, operand=operand) if type(op) in _OPERATORS:
                 return _OPERATORS[type(op)](value(operand))
@@ -133,11 +135,13 @@ def evaluate(
             case ast.Call(func=ast.Name(id=place), args=[argument], keywords=[]):
                 if (name := dotted[int(place[1:])]) not in callables:
                     hint = nearest(name, callables)
-                    raise ConfigError(f"{shown(name)} in {shown(text)} is not a function; {hint}")
+                    raise ConfigError(
+                        f"{excerpt(name)} in {excerpt(text)} is not a function; {hint}"
+                    )
                 return callables[name](value(argument))
         piece = ast.get_source_segment(code, node) or code
         piece = re.sub(r"\b_(\d+)\b", lambda match: dotted[int(match[1])], piece)
-        raise ConfigError(f"{shown(piece)} in {shown(text)} is not allowed; write {_ALLOWED}")
+        raise ConfigError(f"{excerpt(piece)} in {excerpt(text)} is not allowed; write {_ALLOWED}")
 
     try:
         with np.errstate(all="ignore"):
@@ -145,4 +149,4 @@ def evaluate(
     except ConfigError:
         raise
     except (TypeError, ValueError, OverflowError) as error:
-        raise ConfigError(f"{shown(text)} cannot be evaluated: {error}") from None
+        raise ConfigError(f"{excerpt(text)} cannot be evaluated: {error}") from None

@@ -13,9 +13,9 @@ from typing import Annotated, Any, Final, Self
 import tomli_w
 from pydantic import AfterValidator, PlainSerializer, SerializationInfo
 
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, excerpt
 
-from .model import Model, replaced
+from .model import Model, replace_at
 
 _OF_A_VALUE = "Invalid value", "Expected newline", "Unclosed array", "Unclosed inline table"
 """Beginnings of messages of the parser on a value, or on what follows it."""
@@ -78,8 +78,8 @@ class FromFile(Model):
             return cls.from_toml(configuration)
         if not isinstance(configuration, cls):
             raise ConfigError(
-                f"{shown(configuration)} is not a {cls.__name__}; give one, a table of its fields "
-                "or the path of a TOML file"
+                f"{excerpt(configuration)} is not a {cls.__name__}; give one, a table of its "
+                "fields or the path of a TOML file"
             )
         return configuration
 
@@ -185,7 +185,7 @@ def overridden(data: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]
         with suppress(ValueError):
             parsed = tomllib.loads(f"value = {value}")["value"]
         try:
-            data = replaced(data, key.strip(), parsed)
+            data = replace_at(data, key.strip(), parsed)
         except ConfigError as error:
             raise ConfigError(f"--set {text!r}: {error}") from None
     return data

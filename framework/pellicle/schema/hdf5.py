@@ -24,7 +24,7 @@ def fault_of_packing(dataset: Any) -> str:
     return ""
 
 
-def measured(dataset: Any) -> Any:
+def hdf5_numbers(dataset: Any) -> Any:
     """Return the numbers of a dataset; NaN where they are the one that it states for missing."""
     values = dataset[...]
     if (mark := dataset.attrs.get("_FillValue")) is None or values.dtype.kind not in "fiu":

@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
-from pellicle.errors import ConfigError, Problem, shown
+from pellicle.errors import ConfigError, Problem, excerpt
 
 
 def nearest(word: object, candidates: Iterable[str]) -> str:
@@ -80,12 +80,12 @@ def _translated(model: type[BaseModel], detail: ErrorDetails, field: str) -> Ite
             literals = re.findall(r"'[^']*'|\d+", detail["ctx"]["expected"])
             allowed = [literal.strip("'") for literal in literals]
             message = (
-                f"{shown(detail['input'])} is not allowed; {nearest(detail['input'], allowed)}"
+                f"{excerpt(detail['input'])} is not allowed; {nearest(detail['input'], allowed)}"
             )
         case _:
             expected = _WANTED.get(detail["type"], "").format(**detail.get("ctx", {}))
             remedy = f"give {expected}" if expected else detail["msg"].replace("Input", "it")
-            message = f"{shown(detail['input'])} is not allowed; {remedy}"
+            message = f"{excerpt(detail['input'])} is not allowed; {remedy}"
             if description := _description(model, field):
                 message += f" ({description})"
     yield Problem(field, message)

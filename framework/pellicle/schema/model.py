@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Self
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
 
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, excerpt
 
 from .messages import problems
 
@@ -107,7 +107,7 @@ def python_names(paths: Iterable[str]) -> dict[str, str]:
     }
 
 
-def replaced(data: Any, path: str, value: object) -> Any:
+def replace_at(data: Any, path: str, value: object) -> Any:
     """Return a copy of a configuration with ``value`` at a path; missing tables are created.
 
     The copy of a model is a table of the fields that were set.
@@ -118,7 +118,7 @@ def replaced(data: Any, path: str, value: object) -> Any:
         The path leads into a value that is not a table, beyond the end of a list, or too deep.
     """
     if (depth := path.count(".")) > _DEEPEST:
-        raise ConfigError(f"{shown(path)} leads through {depth} tables; give {_DEEPEST} at most")
+        raise ConfigError(f"{excerpt(path)} leads through {depth} tables; give {_DEEPEST} at most")
     return _replaced(data, path.split("."), value, "")
 
 
@@ -133,7 +133,7 @@ def _replaced(at: Any, names: list[str], value: object, path: str) -> Any:
         return {**at, name: _replaced(at.get(name, {}), rest, value, f"{path}{name}.")}
     whole = path.removesuffix(".")
     if not isinstance(at, (list, tuple)):
-        raise ConfigError(f"{whole} = {shown(at)} is not a table; replace it as a whole: {whole}")
+        raise ConfigError(f"{whole} = {excerpt(at)} is not a table; replace it as a whole: {whole}")
     if not name.isdecimal() or int(name) >= len(at):
         raise ConfigError(f"{whole} has no entry {name}; give one of its {len(at)}, counted from 0")
     index = int(name)

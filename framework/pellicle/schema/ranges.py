@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sized
 from numbers import Integral
 from typing import Any, cast
 
-from pellicle.errors import ConfigError, all_problems, shown
+from pellicle.errors import ConfigError, all_problems, excerpt
 from pellicle.units import Quantity, split
 
 Values = tuple[Any, ...]
@@ -20,7 +20,7 @@ _MOST = 1_000_000
 def expand(table: object) -> dict[str, Values]:
     """Return the values of each axis of a study's table, ranges written out."""
     if not isinstance(table, Mapping):
-        raise ConfigError(f'{shown(table)} is not a table; give one: "kernel.tension" = […]')
+        raise ConfigError(f'{excerpt(table)} is not a table; give one: "kernel.tension" = […]')
     axes: dict[str, Values] = {}
     with all_problems() as within:
         for key, values in _flat(table, ""):
@@ -42,19 +42,19 @@ def _flat(table: Mapping[str, Any], path: str) -> Iterator[tuple[str, object]]:
 
 def _values(spec: object) -> Values:
     if isinstance(spec, Mapping):
-        return ranged(spec)
+        return expand_range(spec)
     if hasattr(spec, "tolist"):
         spec = spec.tolist()
     if not isinstance(spec, (list, tuple)):
         raise ConfigError(
-            f"{shown(spec)} is not allowed; give a list of values, or {{start, stop, num}}"
+            f"{excerpt(spec)} is not allowed; give a list of values, or {{start, stop, num}}"
         )
     if not spec:
         raise ConfigError("is empty; give at least one value, or leave the axis out")
     return tuple(value.item() if hasattr(value, "item") else value for value in spec)
 
 
-def ranged(
+def expand_range(
     table: Mapping[str, Any], what: str = "range", options: str = 'spacing = "log"'
 ) -> Values:
     """Return the values of ``{start, stop, num}``, which may also have a ``spacing``.
@@ -71,10 +71,10 @@ def ranged(
     num, spacing = table["num"], table.get("spacing", "linear")
     if not isinstance(num, Integral) or isinstance(num, bool) or not 2 <= int(num) <= _MOST:
         raise ConfigError(
-            f"{shown(num)} is not allowed; give a whole number of values, 2 to {_MOST}", "num"
+            f"{excerpt(num)} is not allowed; give a whole number of values, 2 to {_MOST}", "num"
         )
     if spacing not in SPACINGS:
-        raise ConfigError(f'{shown(spacing)} is not allowed; give "linear" or "log"', "spacing")
+        raise ConfigError(f'{excerpt(spacing)} is not allowed; give "linear" or "log"', "spacing")
     (start, unit), (stop, stop_unit) = (_end(table, end) for end in ("start", "stop"))
     if unit != stop_unit:
         if not unit or not stop_unit:
@@ -115,11 +115,11 @@ def path_of(spec: object, quantity: Quantity) -> tuple[float, ...]:
 def _there_and_back(table: Mapping[Any, Any], quantity: Quantity) -> tuple[float, ...]:
     back = table.get("back", False)
     if not isinstance(back, bool):
-        raise ConfigError(f"{shown(back)} is not allowed; give true or false", "back")
+        raise ConfigError(f"{excerpt(back)} is not allowed; give true or false", "back")
     once = {key: value for key, value in table.items() if key != "back"}
     ends = {end: once[end] for end in ("start", "stop") if end in once}
     once |= zip(ends, _all(ends, quantity), strict=True)
-    values = ranged(once, "ramp", 'back = true or spacing = "log"')
+    values = expand_range(once, "ramp", 'back = true or spacing = "log"')
     return values + values[-2::-1] if back else values
 
 
@@ -157,7 +157,8 @@ def _end(table: Mapping[str, Any], end: str) -> tuple[float, str]:
         return Quantity("1")(number), unit
     except ValueError:
         raise ConfigError(
-            f"{shown(table[end])} is not allowed; give a finite number, with a unit or without", end
+            f"{excerpt(table[end])} is not allowed; give a finite number, with a unit or without",
+            end,
         ) from None
 
 

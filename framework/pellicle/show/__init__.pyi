@@ -4,7 +4,7 @@ from . import sentences as sentences
 from . import tables as tables
 from .drawing import DIVERGING as DIVERGING
 from .drawing import SIZE as SIZE
-from .drawing import Drawn as Drawn
+from .drawing import PlacedSeries as PlacedSeries
 from .drawing import draw as draw
 from .drawing import marks_of as marks_of
 from .fields import contact_and_zone as contact_and_zone

@@ -38,7 +38,7 @@ _MAP, _ACROSS = 2.7, 4
 _PARTS = 20
 
 
-class Drawn(NamedTuple):
+class PlacedSeries(NamedTuple):
     """Where a series was drawn."""
 
     axes: Axes
@@ -56,7 +56,7 @@ def size_of(shown: Chart | Fields) -> tuple[float, float]:
     return SIZE
 
 
-def draw(figure: Figure | SubFigure, shown: Chart | Fields) -> list[Drawn]:
+def draw(figure: Figure | SubFigure, shown: Chart | Fields) -> list[PlacedSeries]:
     """Fill a figure with a chart or fields; return where the series of a chart are."""
     if isinstance(shown, Fields):
         _draw_fields(figure, shown)
@@ -64,7 +64,7 @@ def draw(figure: Figure | SubFigure, shown: Chart | Fields) -> list[Drawn]:
     return _draw_chart(figure, shown)
 
 
-def _draw_chart(figure: Figure | SubFigure, chart: Chart) -> list[Drawn]:
+def _draw_chart(figure: Figure | SubFigure, chart: Chart) -> list[PlacedSeries]:
     count, in_grid = len(chart.y), bool(chart.titles)
     across, down = _arrangement(count) if in_grid else (1, count)
     ratios = {"height_ratios": chart.heights} if chart.heights else {}
@@ -125,7 +125,9 @@ def _name(figure: Figure | SubFigure, panels: Sequence[Axes], chart: Chart) -> N
         figure.legend(distinct.values(), distinct.keys(), **beside)
 
 
-def _draw_series(axes: Axes, series: Series, chart: Chart, scale_x: Scale, scale_y: Scale) -> Drawn:
+def _draw_series(
+    axes: Axes, series: Series, chart: Chart, scale_x: Scale, scale_y: Scale
+) -> PlacedSeries:
     factors = (1.0, 1.0) if series.role == "published" else (scale_x.factor, scale_y.factor)
     x, y = series.x * factors[0], series.y * factors[1]
     style, label = _style(series, chart), series.legend or None
@@ -149,7 +151,7 @@ def _draw_series(axes: Axes, series: Series, chart: Chart, scale_x: Scale, scale
         if bad.any():
             label = f"{named}{_NOT_CONVERGED}"
             axes.plot(x[bad], y[bad], "x", color="red", markersize=9, label=label)
-    return Drawn(axes, series, np.column_stack([x, y]))
+    return PlacedSeries(axes, series, np.column_stack([x, y]))
 
 
 def _style(series: Series, chart: Chart) -> dict[str, Any]:
@@ -315,7 +317,7 @@ def _colours(fields: Fields, factor: float) -> dict[str, Any]:
 
 
 def marks_of(
-    figure: Figure, drawn: Sequence[Drawn], steps: Sequence[int]
+    figure: Figure, drawn: Sequence[PlacedSeries], steps: Sequence[int]
 ) -> list[list[tuple[float, float]]]:
     """Return where load steps lie on a drawn figure, as shares of its size from top left."""
     figure.draw_without_rendering()

@@ -53,7 +53,7 @@ class FigureStyle(Model):
         return width, size[1] * width / size[0]
 
     @contextmanager
-    def applied(self) -> Iterator[None]:
+    def apply_style(self) -> Iterator[None]:
         """Apply the style to what is drawn inside the context."""
         import matplotlib as mpl
         import matplotlib.style

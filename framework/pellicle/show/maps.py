@@ -86,7 +86,7 @@ class Maps:
     """Maps of the same fields in several frames, zoomed together, each in colours of its range."""
 
     caption: str
-    what: str
+    noun: str
     """Noun for a frame, such as ``"load step"``."""
     fields: Sequence[Field]
     frames: Sequence[Frame]

@@ -15,7 +15,7 @@ from pellicle.components.charts import Chart, Fields, Shown, Table
 from pellicle.errors import PluginError
 from pellicle.files import atomic_write, for_document, storage_errors
 
-from .drawing import SIZE, Drawn, draw, size_of
+from .drawing import SIZE, PlacedSeries, draw, size_of
 from .figure_style import FigureStyle, label_log_axes, lay_out
 from .numbers import table_of, write_csv
 
@@ -60,12 +60,12 @@ def write_charts(
 
 def figure_of(
     shown: Chart | Fields | Sequence[Chart | Fields], *, titled: bool = True
-) -> tuple[Callable[[Figure], list[Drawn]], tuple[float, float]]:
+) -> tuple[Callable[[Figure], list[PlacedSeries]], tuple[float, float]]:
     """Return what fills a figure with charts and fields side by side, and its size [inch]."""
     beside = [shown] if isinstance(shown, (Chart, Fields)) else shown
     beside = beside if titled else [replace(part, title="") for part in beside]
 
-    def fill(figure: Figure) -> list[Drawn]:
+    def fill(figure: Figure) -> list[PlacedSeries]:
         places: Any = [figure] if len(beside) == 1 else figure.subfigures(1, len(beside))
         parts = zip(places, beside, strict=True)
         return [drawn for place, part in parts for drawn in draw(place, part)]
@@ -105,7 +105,7 @@ def save_pages(
     # The fonts are embedded as the file is closed, after the figures.
     with (
         atomic_write(path) as part,
-        FigureStyle().applied(),
+        FigureStyle().apply_style(),
         PdfPages(part, metadata={"CreationDate": None}) as file,
     ):
         for draw in draws:
@@ -153,7 +153,7 @@ def _figure(
     from matplotlib.text import Text
 
     style = style or FigureStyle()
-    with style.applied():
+    with style.apply_style():
         figure = Figure(figsize=style.size(size), dpi=150, layout="constrained")
         draw(figure)
         # SVG repeats every text in a comment of its XML.

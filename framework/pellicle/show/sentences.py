@@ -112,7 +112,7 @@ def outcome_of_cases(cases: Sequence[CheckedCase], kernels: Iterable[str]) -> st
     return f"{passed}; no case is about the kernels {others}" if others else passed
 
 
-def done(files: Sequence[Path], resumed: int, whole: str, seconds: float) -> Iterator[str]:
+def work_summary(files: Sequence[Path], resumed: int, whole: str, seconds: float) -> Iterator[str]:
     """Yield how much was done before, the files that were written, and how long all took."""
     if resumed:
         yield f"{resumed} of {whole} were done before (--overwrite starts over)"
@@ -129,7 +129,7 @@ def shared_among_processes(runs: int, seconds: float) -> str:
     )
 
 
-def interrupted(finished: str, folder: Path) -> str:
+def interruption_place(finished: str, folder: Path) -> str:
     """Return where an interruption left the ``finished`` steps or runs."""
     return f"interrupted; finished {finished} are in {folder}, and the same command continues"
 

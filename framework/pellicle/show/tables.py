@@ -27,7 +27,7 @@ from pellicle.results.step_tables import main_steps as main_steps
 from pellicle.results.step_tables import numbers as numbers
 from pellicle.results.step_tables import oscillations as oscillations
 from pellicle.results.step_tables import path as path
-from pellicle.results.wording import column_of, means_something
+from pellicle.results.wording import column_of, has_meaning
 from pellicle.units import axis_unit, readable
 from pellicle.variables import names_of
 
@@ -87,7 +87,7 @@ def runs(table: Dataset, names: Sequence[str] | None = None, mapped: Sequence[in
 def main_runs(table: Dataset) -> Table:
     """Return the parameters of each run of a study, and the main numbers of its last step."""
     named = dict.fromkeys([*names_of("main"), *OF_LOAD]) if has_load(table) else names_of("main")
-    main = [n for n in named if n in table and means_something(table, n)]
+    main = [n for n in named if n in table and has_meaning(table, n)]
     derived = [n for n in json.loads(table.attrs[DERIVED]) if "step" in table[n].dims]
     return runs(table, [*main, *derived])
 
@@ -167,11 +167,11 @@ def origin(attributes: Mapping[str, Any], configuration: Mapping[str, Any]) -> l
     ]
 
 
-def planned(tasks: Sequence[RunTask]) -> tuple[Table, str]:
+def plan_table(tasks: Sequence[RunTask]) -> tuple[Table, str]:
     """Return a row for each run, finished or not, and a sentence on all."""
     rows, done = [], 0
     for task in tasks:
-        _, finished, problem = task.stored()
+        _, finished, problem = task.read_steps()
         done += finished >= task.steps
         nx, ny = task.run.grid.points
         state = f"{finished} of {task.steps} steps done" if finished < task.steps else "done"

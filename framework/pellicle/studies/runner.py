@@ -19,7 +19,7 @@ from typing import Any
 import xarray as xr
 
 from pellicle import memory
-from pellicle.batch import BatchProgress, locked, mapped
+from pellicle.batch import BatchProgress, lock_files, run_tasks
 from pellicle.checks import checked_threads, read_only_dataset
 from pellicle.components import Executor, Output, Say
 from pellicle.components.installed import registry
@@ -39,8 +39,8 @@ from pellicle.runs import runner
 from pellicle.runs.journal import Journal
 from pellicle.runs.lock import LockedError
 from pellicle.runs.memory_estimate import memory_of
-from pellicle.runs.outputs import all_done, standard_outputs, writers
-from pellicle.runs.progress import reporting
+from pellicle.runs.outputs import call_all, standard_outputs, writers
+from pellicle.runs.progress import progress_monitor
 from pellicle.show.sentences import caveats, failures, run_names, shared_among_processes
 
 from . import table
@@ -75,7 +75,7 @@ class RunTask:
         """Number of load steps of the whole run."""
         return self.run.steps
 
-    def stored(self) -> tuple[xr.Dataset | None, int, str]:
+    def read_steps(self) -> tuple[xr.Dataset | None, int, str]:
         """Return the steps in its file, if any, their number, and why it cannot be used, if so."""
         try:
             numbers = self.journal.finished()
@@ -145,7 +145,7 @@ def run_study(
     return with_python_names(rows)
 
 
-def planned(configuration: Run | Study, stem: Path, *, overwrite: bool = False) -> list[RunTask]:
+def plan_runs(configuration: Run | Study, stem: Path, *, overwrite: bool = False) -> list[RunTask]:
     """Return the run of a configuration, or those of a study, finished or not.
 
     ``stem`` is the path of the files of a run without their suffixes; a study is in its folder. The
@@ -174,14 +174,14 @@ def execute(
     overwrite: bool = False,
     threads: int | None = None,
     wait: bool = False,
-) -> runner.Executed[xr.Dataset]:
+) -> runner.RunOutcome[xr.Dataset]:
     """Solve the runs of a study that are not finished, and write its table and outputs.
 
     After an interruption these show the finished steps. One process at a time writes the table, for
     which others ``wait`` or are refused; a run that one of them solves is left to it.
     """
     warn_of_scale(study)
-    with locked(directory, "study", wait=wait):
+    with lock_files(directory, "study", wait=wait):
         path, first = directory / "study.h5", study.points[0].run
         rows, unfinished = _begun(study, path, overwrite)
         resumed = len(study.points) - len(unfinished)
@@ -224,10 +224,10 @@ def execute(
             whole = rows.dataset()
             outputs = [o for o in standard_outputs(first.outputs) if o.scope != "run"]
             calls = writers(outputs, runs, directory / "study", first)
-            of_outputs = all_done([partial(written, call) for call in calls])
+            of_outputs = call_all([partial(written, call) for call in calls])
     for message in (*messages, *caveats(whole)):
         warnings.warn(message, stacklevel=3)
-    return runner.Executed(whole, (*rows.files, *chain(*of_outputs)), resumed)
+    return runner.RunOutcome(whole, (*rows.files, *chain(*of_outputs)), resumed)
 
 
 def reason_of(error: Exception) -> str:
@@ -250,7 +250,7 @@ def _begun(
             storage.table(path)
         except StorageError as error:
             raise StorageError(f"{error}; {storage.REPLACING}") from None
-    tasks = planned(study, path)
+    tasks = plan_runs(study, path)
     if overwrite:
         # Otherwise an interruption would leave results of before among the new ones.
         for task in tasks:
@@ -273,7 +273,7 @@ def _solve_all(
 
     def solve_by(by: Executor, tasks: Sequence[RunTask]) -> None:
         by = with_threads(by, threads)
-        mapped(by, partial(solve, threads=by.threads), tasks, xr.Dataset, keep, bar)
+        run_tasks(by, partial(solve, threads=by.threads), tasks, xr.Dataset, keep, bar)
 
     while todo and executor is None:
         task, *todo = todo
@@ -303,10 +303,10 @@ def solve(task: RunTask, say: Say, threads: int | None) -> xr.Dataset:
     Warnings are stored in the attributes, so that a warning is shown once for all runs. Another
     process may have finished the run since it was planned.
     """
-    numbers, count, _ = task.stored()
+    numbers, count, _ = task.read_steps()
     if numbers is not None and count == task.steps:
         return with_events(numbers).assign_attrs({WARNINGS: []})
-    bar = nullcontext(partial(reporting, steps=task.steps, show=say))
+    bar = nullcontext(partial(progress_monitor, steps=task.steps, show=say))
     with _recorded_warnings() as caught:
         executed = runner.execute(
             task.run, task.journal, task.outputs, bar, threads=threads, inner=True
@@ -337,7 +337,7 @@ def _recorded_warnings() -> Iterator[list[warnings.WarningMessage]]:
 def _collect(task: RunTask, rows: table.StudyTable) -> int:
     """Copy the steps in the file of a run into the table; return their number."""
     # A run whose file cannot be used will fail with a message that names the remedy.
-    numbers, count, _ = task.stored()
+    numbers, count, _ = task.read_steps()
     if numbers is not None:
         rows.put(task.index, with_events(numbers))
     return count
@@ -364,7 +364,7 @@ def _completed(earlier: xr.Dataset, path: Path) -> xr.Dataset:
     """Return an unfinished table with all steps that the files of its runs hold."""
     study = Study.from_mapping(json.loads(earlier.attrs["configuration"]))
     rows, statuses = table.StudyTable(study), earlier["status"].values
-    for task in planned(study, path):
+    for task in plan_runs(study, path):
         _collect(task, rows)
         failed = earlier["status_code"].values[task.index] == Status.FAILED.name
         for sentence in statuses[task.index][failed][:1]:

@@ -88,9 +88,9 @@ def convolve(
 
     block = max(_BLOCK, px * py if px * py < _SHARED else 0)
     rows = blocks(nx, max(1, block // py))
-    shared(forward, rows)
-    shared(multiplied, blocks(transform.shape[1], max(_LINE, block // px)))
-    shared(backward, rows)
+    in_threads(forward, rows)
+    in_threads(multiplied, blocks(transform.shape[1], max(_LINE, block // px)))
+    in_threads(backward, rows)
     return result
 
 
@@ -104,7 +104,7 @@ def row_blocks(shape: tuple[int, ...]) -> list[slice]:
     return blocks(shape[0], max(1, _PASS // max(1, math.prod(shape[1:]))))
 
 
-def shared(work: Callable[[Block], Result], blocks: Sequence[Block]) -> list[Result]:
+def in_threads(work: Callable[[Block], Result], blocks: Sequence[Block]) -> list[Result]:
     """Return what ``work`` returns for each block, in the order of the blocks.
 
     As many threads as `scipy.fft.get_workers` says take the blocks as they become free; numpy and

@@ -12,11 +12,11 @@ import scipy.fft
 
 from pellicle.arrays import Array
 from pellicle.checks import component_name, errors_attributed_to, read_only, real_array, real_number
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, excerpt
 from pellicle.grid import Grid
 from pellicle.units import readable
 
-from .hankel import Tabulated
+from .hankel import KernelTable
 from .influence import cell_coefficients, warn_of_cells
 from .operators import Operator, Symbol, along_axes
 
@@ -161,7 +161,7 @@ def _free(kernel: HasSymbol, grid: Grid, form: HasClosedForm | None) -> Operator
     """
     symbol = checked_call(kernel, "symbol")
     with np.errstate(all="ignore"):
-        if form is None or isinstance(form, Tabulated):
+        if form is None or isinstance(form, KernelTable):
             form = _table(kernel, symbol, grid, form)
         cells = cell_coefficients(
             checked_call(form, "greens_function"),
@@ -194,14 +194,14 @@ def _free(kernel: HasSymbol, grid: Grid, form: HasClosedForm | None) -> Operator
     return Operator(grid, values, (px, py), symbol, lambda new_grid: _free(kernel, new_grid, form))
 
 
-def _table(kernel: HasSymbol, symbol: Symbol, grid: Grid, table: Tabulated | None) -> Tabulated:
+def _table(kernel: HasSymbol, symbol: Symbol, grid: Grid, table: KernelTable | None) -> KernelTable:
     """Return a table of the displacement around a point force; ``table`` if that reaches."""
     # These radii cover all coarser grids of the same domain, which reuse the table.
     shortest, longest = 0.2 * min(grid.spacing), 3 * math.hypot(*grid.size)
     if table and table.shortest <= shortest and longest <= table.longest:
         return table
     try:
-        return Tabulated(lambda q: symbol(q, np.zeros_like(q)), shortest, longest)
+        return KernelTable(lambda q: symbol(q, np.zeros_like(q)), shortest, longest)
     except ConfigError as error:
         # An error of the kernel itself names its field.
         of_table = error.problems[0].field == "kernel"
@@ -235,10 +235,10 @@ def displacement(pressure: Array, *, kernel: HasSymbol, grid: Grid) -> Array:
     """
     if not hasattr(kernel, "symbol"):
         raise ConfigError(
-            f"{shown(kernel)} is not a kernel; make one with pellicle.kernel(…)", "kernel"
+            f"{excerpt(kernel)} is not a kernel; make one with pellicle.kernel(…)", "kernel"
         )
     if not isinstance(grid, Grid):
-        raise ConfigError(f"{shown(grid)} is not a grid; make one with pellicle.Grid(…)", "grid")
+        raise ConfigError(f"{excerpt(grid)} is not a grid; make one with pellicle.Grid(…)", "grid")
     tractions = np.asarray(pressure)
     if tractions.shape != grid.shape or tractions.dtype.kind not in "fiu":
         raise ConfigError(

@@ -48,7 +48,7 @@ _MARGIN = 12  # nodes of the splines beyond each end of the tabulated radii
 _STEEPEST = 1.5  # power of 1/q towards q = 0; from 2 on displacements are not finite
 
 
-class Tabulated:
+class KernelTable:
     """A kernel given by G(q) [m/Pa] alone, tabulated in real space between two radii [m].
 
     Refused are a G(q) that is not positive and finite, grows at large q or leaves no finite

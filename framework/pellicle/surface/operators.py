@@ -58,7 +58,7 @@ class Operator:
         """Returns the operator of the same solid on another grid."""
         self.workspace = Workspace()
         """Memory of the transforms, shared with `scaled` copies and preconditioners."""
-        self.made: dict[object, Any] = {}
+        self.cache: dict[object, Any] = {}
         """What `keep` has kept, shared with `scaled` copies."""
         # Shared with `scaled` copies.
         self._count = [0]
@@ -145,14 +145,14 @@ class Operator:
         On a large grid it is not kept: making it takes little of the time, and keeping it memory.
         """
         if math.prod(self.grid.shape) <= _SMALL:
-            self.made[key] = made
+            self.cache[key] = made
 
     def coarsened(self) -> Operator:
         """Return the operator of the same solid on `Grid.coarsened`, as `scaled` as this one.
 
         It uses the memory of the transforms of this one.
         """
-        coarse: Operator | None = self.made.get("coarsened")
+        coarse: Operator | None = self.cache.get("coarsened")
         if coarse is None:
             coarse = self.on(self.grid.coarsened())
             coarse.workspace = self.workspace

@@ -16,12 +16,12 @@ from numpy.typing import ArrayLike
 
 from pellicle.components import Component
 from pellicle.components.installed import registry
-from pellicle.components.rules import CHEAP, Case, required
+from pellicle.components.rules import CHEAP, Case, requirement_of
 from pellicle.components.rules.rule import difference
 from pellicle.components.rules.rule import rules_of as rules_of
 from pellicle.errors import PellicleError
 from pellicle.plugins.origins import GROUP
-from pellicle.plugins.registry import Registered, checked_type, family_of
+from pellicle.plugins.registry import InstalledComponent, checked_type, family_of
 from pellicle.units import parts_of, quantity_of
 
 Rule = Callable[..., str | None]
@@ -43,7 +43,7 @@ def keep(rules: Iterable[Rule], component: Any, *arguments: Any) -> None:
         if violation:
             raise AssertionError(
                 f"{type(component).__name__} breaks the rule {rule.__name__}\n"
-                f"required: {required(rule)}\n"
+                f"required: {requirement_of(rule)}\n"
                 f"violation: {violation}"
             ) from cause
 
@@ -182,7 +182,7 @@ def kit_of(base: type[Component]) -> Callable[[Component], None] | None:
     return getattr(module, f"check_{base.family}", None)
 
 
-def verdict_on_examples(registered: Registered) -> tuple[bool, str]:
+def verdict_on_examples(registered: InstalledComponent) -> tuple[bool, str]:
     """Return whether the examples of a component keep its contract, and in words how far.
 
     Without examples only what registration requires of the class has been checked.

@@ -10,7 +10,7 @@ from pellicle.components.calls import corrected_area
 from pellicle.grid import Boundary, Grid
 
 from .component import check, require, require_close, rules_of
-from .small_runs import solved
+from .small_runs import solve_small_run
 
 _SPACING = (2e-6, 3e-6)
 _CELL = _SPACING[0] * _SPACING[1]
@@ -105,6 +105,6 @@ def periodic_area_has_no_seam(correction: AreaCorrection) -> None:
 
 def goes_into_the_result(correction: AreaCorrection) -> None:
     """The result of a run has the area as contact_area_<type>."""
-    dataset = solved(loading={"depth": "50 um"}, corrections=[correction])
+    dataset = solve_small_run(loading={"depth": "50 um"}, corrections=[correction])
     area = dataset[f"contact_area_{correction.type_name}"].item()
     require(area > 0, f"{area:g} m² for {dataset['contact_area'].item():g} m² of cells")

@@ -8,11 +8,11 @@ from pellicle.arrays import Array
 from pellicle.checks import read_only, real_array
 from pellicle.components import ForceCurve, HasForceCurve, Indenter
 from pellicle.components.calls import profile_of
-from pellicle.errors import shown
+from pellicle.errors import excerpt
 from pellicle.grid import Grid
 
 from .component import check, require, require_close, rules_of
-from .small_runs import solved
+from .small_runs import solve_small_run
 
 
 def check_indenter(indenter: Indenter, grid: Grid | None = None) -> None:
@@ -79,7 +79,7 @@ def force_curve_rises(indenter: Indenter, grid: Grid) -> None:
 
 def _force_curve(indenter: HasForceCurve, depth: Array, length: float) -> ForceCurve:
     curve = indenter.force_curve(read_only(depth), length)
-    require(isinstance(curve, ForceCurve), f"{shown(curve)}, not a pellicle.ForceCurve")
+    require(isinstance(curve, ForceCurve), f"{excerpt(curve)}, not a pellicle.ForceCurve")
     for part, values in curve._asdict().items():
         real_array(indenter, f"force_curve().{part}", values, depth.shape)
     return curve
@@ -88,7 +88,7 @@ def _force_curve(indenter: HasForceCurve, depth: Array, length: float) -> ForceC
 def run_converges(indenter: Indenter, grid: Grid) -> None:
     """Pressed into a half-space, the indenter makes contact and the run converges."""
     depth = 0.01 * _range(indenter.profile(*grid.coordinates())) or 0.01 * min(grid.size)
-    dataset = solved(grid=grid, indenter=indenter, loading={"depth": depth})
+    dataset = solve_small_run(grid=grid, indenter=indenter, loading={"depth": depth})
     require(dataset["force"].item() > 0, f"no contact at a depth of {depth:g} m")
 
 

@@ -13,10 +13,10 @@ from pellicle.components.rules import Case
 from pellicle.grid import Grid
 
 from .component import check, require, require_close, rules_of
-from .small_runs import solved
+from .small_runs import solve_small_run
 
 _RADIUS = 1e-3
-"""Radius R of the sphere [m], that of the paraboloid of `solved`."""
+"""Radius R of the sphere [m], that of the paraboloid of `solve_small_run`."""
 
 
 def check_interaction(interaction: Interaction) -> None:
@@ -32,7 +32,7 @@ def run_under_a_pull_converges(interaction: Interaction) -> None:
     """A sphere that is pressed, and then pulled by 0.5πwR, stays in contact; the run converges."""
     modulus, size = _sizes(interaction)
     unit = np.pi * _at_rest(interaction.energy) * _RADIUS
-    data = solved(
+    data = solve_small_run(
         grid={"points": 64, "size": size, "boundary": "free"},
         kernel=kernel("half_space", reduced_modulus=modulus),
         interaction=interaction,

@@ -18,7 +18,7 @@ from pellicle.schema.model import walk, with_value
 from pellicle.surface.from_kernel import displacement
 
 from .component import check, require_close, rules_of
-from .small_runs import solved
+from .small_runs import solve_small_run
 
 _WIDTH = 1e-4
 """Width w of the Gaussian pressure exp(−r²/2w²) [m]."""
@@ -45,7 +45,9 @@ def runs_converge(kernel: Kernel) -> None:
     for boundary in ("periodic", "free") if kernel.is_isotropic else ("periodic",):
         grid = {"points": 24, "size": "1 mm", "boundary": boundary}
         # A run of a kernel that relaxes would need times.
-        solved(grid=grid, kernel=instantaneous(kernel), loading={"depth": ["5 um", "20 um"]})
+        solve_small_run(
+            grid=grid, kernel=instantaneous(kernel), loading={"depth": ["5 um", "20 um"]}
+        )
 
 
 def numbers_have_derivatives(kernel: Kernel) -> None:
@@ -65,8 +67,8 @@ def numbers_have_derivatives(kernel: Kernel) -> None:
             if isinstance(value, float) and value:
                 field = path.removeprefix("kernel.")
                 kernels = [with_value(elastic, field, share * value) for share in (0.99, 1.01)]
-                less, more = (solved(**run, kernel=k)["force"].values for k in kernels)
-                result = solved(**run, kernel=elastic, gradient=[path])
+                less, more = (solve_small_run(**run, kernel=k)["force"].values for k in kernels)
+                result = solve_small_run(**run, kernel=elastic, gradient=[path])
                 require_close(
                     result[f"force_by_{path.replace('.', '_')}"].values * value,
                     (more - less) / 0.02,

@@ -10,7 +10,7 @@ from pellicle.errors import ConfigError
 from pellicle.grid import Grid
 
 from .component import check, require, require_close, rules_of
-from .small_runs import HALF_SPACE, solved
+from .small_runs import HALF_SPACE, solve_small_run
 
 
 def check_load(load: Load, grid: Grid | None = None) -> None:
@@ -45,5 +45,5 @@ def force_does_not_depend_on_the_cells(load: Load, grid: Grid) -> None:
 
 def run_converges(load: Load, grid: Grid) -> None:
     """A half-space under the load is deformed, and the run converges."""
-    data = solved(grid=grid, kernel=HALF_SPACE, indenter=None, load=load)
+    data = solve_small_run(grid=grid, kernel=HALF_SPACE, indenter=None, load=load)
     require(bool(data["displacement"].values.any()), "no displacement")

@@ -27,7 +27,7 @@ _PARTS: dict[str, Any] = {
 }
 
 
-def solved(**parts: Any) -> xr.Dataset:
+def solve_small_run(**parts: Any) -> xr.Dataset:
     """Return the dataset of a run with ``parts`` in place of ours; every step must converge."""
     run = Run(**_PARTS | parts)
     result = solve(run)

@@ -17,7 +17,7 @@ from pellicle.contact.solution import State
 from pellicle.surface.from_kernel import operator_of
 
 from .component import check, require, require_close, rules_of
-from .small_runs import PARABOLOID, ROUGH, ignore, solved
+from .small_runs import PARABOLOID, ROUGH, ignore, solve_small_run
 
 _SKIN = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 1.0}
 _SMOOTH: dict[str, Any] = {
@@ -51,7 +51,9 @@ def check_solver(solver: Solver) -> None:
 
 def _solve(problem: dict[str, Any], solver: Solver, prescribed: str, *values: float) -> xr.Dataset:
     """Return the last of several load steps, each started from the one before."""
-    return solved(**problem, solver=solver, loading={prescribed: list(values)}).isel(step=-1)
+    return solve_small_run(**problem, solver=solver, loading={prescribed: list(values)}).isel(
+        step=-1
+    )
 
 
 @lru_cache(maxsize=len(_CASES))

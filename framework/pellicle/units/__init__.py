@@ -19,18 +19,18 @@ from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
 
-from pellicle.errors import shown
+from pellicle.errors import excerpt
 
 from .conversion import NUMBER_AND_UNIT, factor_to_si
-from .conversion import one as one
 from .conversion import si_unit as si_unit
 from .conversion import split as split
+from .conversion import unit_quantity as unit_quantity
 from .scales import DIGITS as DIGITS
 from .scales import NOTHING as NOTHING
 from .scales import Scale as Scale
 from .scales import axis_unit as axis_unit
 from .scales import decimal as decimal
-from .scales import printed as printed
+from .scales import format_unit as format_unit
 from .scales import readable as readable
 
 _EXAMPLES = {
@@ -94,13 +94,15 @@ class Quantity:
         """
         number = value if type(value) is float else self._in_si(value)
         if not math.isfinite(number):
-            raise ValueError(f"{shown(value)} is not finite; give {self._wanted()}")
+            raise ValueError(f"{excerpt(value)} is not finite; give {self._wanted()}")
         for _, _, holds, bound in self._limits:
             if not holds(number, bound):
-                raise ValueError(f"{shown(value)} is not allowed; give {self._wanted()}{self.hint}")
+                raise ValueError(
+                    f"{excerpt(value)} is not allowed; give {self._wanted()}{self.hint}"
+                )
         if number and not 1 / LARGEST < abs(number) < LARGEST:
             raise ValueError(
-                f"{shown(value)} is too large or too near 0 to compute with; check the unit"
+                f"{excerpt(value)} is too large or too near 0 to compute with; check the unit"
             )
         # Of −0, tables would show the sign, and a run would not be the one of 0.
         return number + 0.0
@@ -115,23 +117,23 @@ class Quantity:
         if isinstance(getattr(value, "magnitude", None), Real) and hasattr(value, "units"):
             value = f"{float(value.magnitude)!r} {value.units}".removesuffix("dimensionless")  # type: ignore[attr-defined]
         if not isinstance(value, str):
-            raise ValueError(f"{shown(value)} is not a number; give {self._wanted()}")
+            raise ValueError(f"{excerpt(value)} is not a number; give {self._wanted()}")
         match = NUMBER_AND_UNIT.fullmatch(value.strip())
         if match is None:
-            raise ValueError(f"{shown(value)} is not a number with a unit; give {self._wanted()}")
+            raise ValueError(f"{excerpt(value)} is not a number with a unit; give {self._wanted()}")
         number, unit = float(match[1]), match[2]
         if not math.isfinite(number):
             return number
         if self.unit == "1":
             if unit:
-                raise ValueError(f"{shown(value)} has a unit; give {self._wanted()}")
+                raise ValueError(f"{excerpt(value)} has a unit; give {self._wanted()}")
             return number
         if not unit:
-            raise ValueError(f"{shown(value)} is text without a unit; give {self._wanted()}")
+            raise ValueError(f"{excerpt(value)} is text without a unit; give {self._wanted()}")
         try:
             factor = factor_to_si(unit, self.unit)
         except ValueError as problem:
-            raise ValueError(f"{shown(value)} {problem}; give {self._wanted()}") from None
+            raise ValueError(f"{excerpt(value)} {problem}; give {self._wanted()}") from None
         # In decimal "10 um" is 1e-05; in binary it would be 9.999999999999999e-06. The exponent of
         # what is 0 in binary may be beyond decimals.
         return float(Decimal(match[1]) * Decimal(repr(factor))) if number else 0.0
@@ -146,7 +148,7 @@ class Quantity:
 
     def powers(self) -> tuple[int, int, int]:
         """Return the powers of N, m and s in the unit."""
-        dimensions = {} if self.unit == "1" else one(self.unit).dimensionality
+        dimensions = {} if self.unit == "1" else unit_quantity(self.unit).dimensionality
         mass, length, time = (int(dimensions.get(f"[{d}]", 0)) for d in ("mass", "length", "time"))
         return mass, length - mass, time + 2 * mass
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any
 
-from pellicle.errors import shown
+from pellicle.errors import excerpt
 
 NUMBER_AND_UNIT = re.compile(
     r"([-+]?(?:nan\b|inf(?:inity)?\b|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*(.*)",
@@ -36,7 +36,7 @@ def split(text: str) -> tuple[float, str] | None:
     return (float(match[1]), match[2]) if match else None
 
 
-def one(unit: str) -> Any:
+def unit_quantity(unit: str) -> Any:
     """Return 1 of a unit as a pint quantity in SI, whose arithmetic keeps dimensions."""
     return _quantity(1.0, unit).to_base_units()
 
@@ -57,7 +57,7 @@ def _quantity(number: float, unit: str) -> Any:
             # pint raises a dozen unrelated types (syntax, token, attribute errors) for bad units;
             # decibels and large powers fail in SI only.
             pass
-    raise ValueError(f"has an unknown unit ({shown(unit)})")
+    raise ValueError(f"has an unknown unit ({excerpt(unit)})")
 
 
 def si_unit(value: Any) -> str:
@@ -69,7 +69,7 @@ def si_unit(value: Any) -> str:
     dimensions: Mapping[str, float] = getattr(value, "dimensionality", {})
     if not dimensions or not all(map(math.isfinite, dimensions.values())):
         return "1"
-    named_unit = next((u for u in _NAMED if one(u).dimensionality == dimensions), "")
+    named_unit = next((u for u in _NAMED if unit_quantity(u).dimensionality == dimensions), "")
     if not named_unit and not dimensions.keys() <= {"[mass]", "[length]", "[time]"}:
         return "1"
     mass, length, time = (dimensions.get(f"[{name}]", 0) for name in ("mass", "length", "time"))
@@ -87,7 +87,7 @@ def si_unit(value: Any) -> str:
 def factor_to_si(unit: str, si: str) -> float:
     """Return the factor from ``unit`` to the unit ``si``; refuse a unit that does not fit."""
     # Per cent and angles have no dimension, but root units of their own.
-    if one(unit).to_root_units().units != one(si).to_root_units().units:
+    if unit_quantity(unit).to_root_units().units != unit_quantity(si).to_root_units().units:
         raise ValueError(f"is in {unit}, which is no unit of {si}")
     to = _quantity(1.0, si).units
     factor, zero = (float(_quantity(x, unit).to(to).magnitude) for x in (1.0, 0.0))

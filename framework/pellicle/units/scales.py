@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from pellicle.errors import shown
+from pellicle.errors import excerpt
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -41,7 +41,7 @@ class Scale(NamedTuple):
         Whole numbers and texts are not rounded.
         """
         if not isinstance(value, Real) or isinstance(value, bool):
-            return value if isinstance(value, str) else shown(value)
+            return value if isinstance(value, str) else excerpt(value)
         if isinstance(value, Integral) and self.factor == 1.0:
             return str(int(value))
         number = float(value) * self.factor
@@ -77,7 +77,7 @@ def decimal(number: float, digits: int) -> str:
     return f"{number:.0f}" if "e+0" in text and abs(number) < 1e6 else text
 
 
-def printed(unit: str) -> str:
+def format_unit(unit: str) -> str:
     """Return a unit as it is printed: ``J/m²`` for ``J/m**2``, ``°C`` as it is."""
     raised = re.sub(
         r"(?:\*\*|\^)(?:\((-?\d+)\)|(-?\d+)(?![\d.]))|(?<=[^\W\d_])(\d+)(?![\w.])",
@@ -106,7 +106,7 @@ def axis_unit(values: ArrayLike, unit: str) -> Scale:
     highest = float(f"{float(finite.max(initial=0.0)):.{DIGITS}g}")
     match = _FIRST.fullmatch(unit)
     if match is None or match[1] not in _PREFIXED or not highest:
-        return Scale(1.0, printed(unit))
+        return Scale(1.0, format_unit(unit))
     power = int(match[2] or 1)
     lowest = 1.0 if power == 1 else 0.1
     exponent = 3 * math.floor(round(math.log10(highest) / power - math.log10(lowest), 9) / 3)
@@ -114,8 +114,8 @@ def axis_unit(values: ArrayLike, unit: str) -> Scale:
         # 3600 s reads better than 3.6 ks.
         exponent = min(exponent, 0)
     if exponent not in _PREFIXES:
-        return Scale(1.0, printed(unit))
-    return Scale(10.0 ** (-power * exponent), f"{_PREFIXES[exponent]}{printed(unit)}")
+        return Scale(1.0, format_unit(unit))
+    return Scale(10.0 ** (-power * exponent), f"{_PREFIXES[exponent]}{format_unit(unit)}")
 
 
 def readable(value: Any, unit: str = "1", digits: int = 6) -> str:

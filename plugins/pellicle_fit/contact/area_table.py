@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pellicle.arrays import Array
 from pellicle.components import HasForceCurve, HasLayerForceCurve
-from pellicle.errors import PluginError, shown
+from pellicle.errors import PluginError, excerpt
 
 _DEPTHS, _STEP, _FINE = 0.1, 0.2, 0.1
 """Distances of nodes in the logarithm of the depth, and in what else: s, or a thickness."""
@@ -61,7 +61,7 @@ def checked_area(indenter: object, curve: object, depth: Array) -> Array:
     ):
         raise PluginError(
             f"indenter {getattr(indenter, 'type_name', type(indenter).__name__)!r}: its force "
-            f"curve is {shown(curve)}; it has to be a ForceCurve whose force is an array of "
+            f"curve is {excerpt(curve)}; it has to be a ForceCurve whose force is an array of "
             f"float64 of shape {depth.shape}, finite at all depths"
         )
     return area

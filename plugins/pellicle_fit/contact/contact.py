@@ -148,14 +148,14 @@ class Contact:
         return self.size * self.own_radius if self.own_radius else None
 
     @property
-    def is_own(self) -> bool:
+    def is_bare(self) -> bool:
         """Whether it is the indenter itself on a half-space, under a tension or not."""
         return self.half_space and isinstance(self.area, OwnArea)
 
     @property
     def is_bare_indenter(self) -> bool:
         """Whether it is the indenter itself on a half-space, with a known contact radius."""
-        return self.is_own and isinstance(self.indenter, HasContactRadius)
+        return self.is_bare and isinstance(self.indenter, HasContactRadius)
 
     def force(self, depth: Array) -> Array:
         """Return the force [N] at depths [m]."""

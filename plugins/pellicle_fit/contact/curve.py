@@ -140,7 +140,7 @@ class Curve:
         return at_rest.at_velocity(0.0)
 
     @cached_property
-    def smoothed(self) -> Array:
+    def smooth_force(self) -> Array:
         """Means of the forces of neighbours on one pass [N]."""
         smoothed = np.empty_like(self.force)
         for rows in self.passes:
@@ -167,7 +167,7 @@ class Curve:
     @cached_property
     def coarse(self) -> Curve:
         """Few means, which tell where a minimum is."""
-        return replace(self.binned(_COARSE), is_rough=True)
+        return replace(self.bin_means(_COARSE), is_rough=True)
 
     @cached_property
     def span(self) -> float:
@@ -197,7 +197,7 @@ class Curve:
                 groups += [*rows[:, None]]
                 continue
             inward = rows[::-1] if self.moves_out[rows[0]] else rows
-            force, way = self.smoothed[inward], np.maximum.accumulate(self.position[inward])
+            force, way = self.smooth_force[inward], np.maximum.accumulate(self.position[inward])
             clear = way[np.argmax(force > force.min() + _CLEAR * float(np.ptp(force)))]
             near = np.maximum(way - way[-1] + _WAYS * (way[-1] - clear), 0.0)
             along, parts = np.arange(rows.size) / rows.size + near / (near[-1] or 1.0), 2
@@ -210,7 +210,7 @@ class Curve:
             )
         return groups
 
-    def binned(self, bins: int) -> Curve:
+    def bin_means(self, bins: int) -> Curve:
         """Return means of neighbouring rows, at most ``bins`` for each pass.
 
         Over so short a way a force without jumps is straight: but for a constant, χ² of the rows is

@@ -25,7 +25,7 @@ class Dimitriadis(Layer, title="a thin layer by the polynomial of Dimitriadis"):
         """Refuse tips that are not round, and sets with a tension."""
         if "tension" in beside:
             return "the polynomial is known without a tension"
-        return "" if contact.is_own and contact.tip_radius else "needs a round tip"
+        return "" if contact.is_bare and contact.tip_radius else "needs a round tip"
 
     def contact(self, contact: Contact) -> Contact:
         """Return the contact with the layer, F = 4/3 E* √R δ^(3/2) P(χ)."""

@@ -33,7 +33,7 @@ class Layer(Bends, title="a thin layer"):
     def excuse(self, contact: Contact, curve: Curve, beside: frozenset[str]) -> str:
         """Refuse an indenter without a curve on layers, or one whose tip is another."""
         body = contact.indenter
-        if contact.is_own and isinstance(body, HasLayerForceCurve):
+        if contact.is_bare and isinstance(body, HasLayerForceCurve):
             limit = body.layer_depth_limit(self.thickness or 1.0, self.poissons_ratio)
             return "" if limit > 0 else "the curve of this tip on a layer is not known"
         return "needs an indenter whose curve on a layer is known"

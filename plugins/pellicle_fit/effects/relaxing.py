@@ -121,7 +121,7 @@ class Relaxing(Responds):
         paths = np.broadcast_to(path, (count, path.shape[-1]))
         values = np.array([np.broadcast_to(column, count) for column in columns]).T
         # Trials of a modulus alone have one course.
-        alone = contact.is_own and isinstance(contact.size, float)
+        alone = contact.is_bare and isinstance(contact.size, float)
         keys = [
             (p.tobytes(), v.tobytes()) if alone else i
             for i, (p, v) in enumerate(zip(paths, values, strict=True))

@@ -33,11 +33,11 @@ class Candidate:
     """Types of its effects, but for those that all explanations have."""
     objective: Objective
     minimum: Minimum
-    whole: tuple[Curve, ...]
+    all_rows: tuple[Curve, ...]
     """The curves with all their rows."""
     estimates: Mapping[str, Estimate] = field(default_factory=dict)
     """Those whose ends were sought: of the chosen explanation all, unless no model describes."""
-    weighed: tuple[Objective, Minimum] | None = None
+    calibration_minimum: tuple[Objective, Minimum] | None = None
     """χ² by which these were sought, and its minimum, where the calibration is weighed."""
 
     @cached_property
@@ -73,7 +73,7 @@ class Candidate:
 
         What is at a limit, or what the curves do not determine at all, has none.
         """
-        objective, minimum = self.weighed or (self.objective, self.minimum)
+        objective, minimum = self.calibration_minimum or (self.objective, self.minimum)
         free = objective.within(minimum.at)
         jacobian = objective.jacobian(minimum.at, free)
         sizes = np.linalg.norm(jacobian, axis=0)
@@ -88,7 +88,7 @@ class Candidate:
         }
 
     @property
-    def sought(self) -> dict[str, Estimate]:
+    def all_estimates(self) -> dict[str, Estimate]:
         """Those of the quantities that were given or whose ends were sought."""
         return {n: e for n, e in self.parameters.items() if e.held or n in self.estimates}
 
@@ -100,28 +100,28 @@ class Candidate:
     @cached_property
     def known(self) -> list[Explanation]:
         """The explanation of each curve, with the values of its quantities."""
-        return [self.objective.known(self.minimum.at, i) for i in range(len(self.whole))]
+        return [self.objective.known(self.minimum.at, i) for i in range(len(self.all_rows))]
 
     @property
     def contact_points(self) -> list[float]:
         """Position of the base at first touch on each curve [m]."""
-        pairs = zip(self.known, self.whole, strict=True)
+        pairs = zip(self.known, self.all_rows, strict=True)
         return [float((curve.base - known.base_depth(curve))[0]) for known, curve in pairs]
 
     @property
     def depths(self) -> list[Array]:
         """Depth of the tip [m] in each row of each curve, negative before contact."""
-        return [known.depth(curve) for known, curve in zip(self.known, self.whole, strict=True)]
+        return [known.depth(curve) for known, curve in zip(self.known, self.all_rows, strict=True)]
 
     @cached_property
     def of_rows(self) -> Objective:
         """χ² of all rows as a function of its quantities."""
-        return replace(self.objective, curves=self.whole)
+        return replace(self.objective, curves=self.all_rows)
 
     @cached_property
     def squares(self) -> tuple[float, ...]:
         """χ² of all rows of each curve, then that of each term of what is weighed."""
-        if all(a is b for a, b in zip(self.whole, self.objective.curves, strict=True)):
+        if all(a is b for a, b in zip(self.all_rows, self.objective.curves, strict=True)):
             return self.minimum.squares
         return self.of_rows.squares(self.of_rows.terms(self.minimum.at))
 
@@ -162,7 +162,7 @@ class Candidate:
         new.__dict__["squares"] = _scaled(self.squares, factors)
         return new
 
-    def polished(self) -> Candidate:
+    def polish(self) -> Candidate:
         """Return the same at its least χ² to all digits."""
         return replace(self, minimum=self.objective.minimise(self.minimum.at))
 
@@ -175,7 +175,7 @@ class Candidate:
         # Behind the rows of all curves stand those of what is weighed.
         by_curve = np.split(jacobian, np.cumsum([force.size for force in forces]))[:-1]
         memory = self.objective.memory or [0.0] * len(forces)
-        columns, checks = (self.known, self.whole, forces, objective.noise, by_curve, memory), []
+        columns, checks = (self.known, self.all_rows, forces, objective.noise, by_curve, memory), []
         for known, curve, force, noise, derivatives, d in zip(*columns, strict=True):
             depth = known.base_depth(curve)
             check = check_residuals(curve, curve.force - force, derivatives * noise, depth, d)

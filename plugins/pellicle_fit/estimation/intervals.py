@@ -184,7 +184,7 @@ class _Way:
         self.distance = min(first, self.limit)
         self.below, self.above = (0.0, -self.rise, at), (np.inf, 0.0, at)
         self.before = self.below
-        self.ended = not (self.limit > 0 and np.isfinite(threshold))
+        self.is_done = not (self.limit > 0 and np.isfinite(threshold))
         self.end: float | None = None
         self._open = End.LIMIT if to_limit <= far else End.RANGE
         self._is_sought = bool(np.isfinite(threshold))
@@ -201,7 +201,7 @@ class _Way:
         start[self.k] = self.minimum.at[self.k] + self.sign * self.distance
         return np.asarray(start)
 
-    def reached(self, minimum: Minimum) -> None:
+    def advance(self, minimum: Minimum) -> None:
         """Go on from the least χ² at the present distance, by a secant of the root of its rise."""
         rise = float(np.sqrt(max(minimum.chi_squared - self.minimum.chi_squared, 0.0)))
         here, excess, last = self.distance, rise - self.rise, self.below
@@ -210,14 +210,14 @@ class _Way:
         else:
             self.before, self.below = last, (here, excess, minimum.at)
             if here >= self.limit:
-                self.ended = True
+                self.is_done = True
                 return
         bracketed = np.isfinite(self.above[0])
         first, second = (self.below, self.above) if bracketed else (last, self.below)
         if second[0] <= first[0]:
             # χ² jumps here: from another start a search has found another minimum.
             self.stop()
-            self.ended = True
+            self.is_done = True
             return
         slope = (second[1] - first[1]) / (second[0] - first[0])
         new = first[0] - first[1] / slope if slope > 0 else np.inf
@@ -232,7 +232,7 @@ class _Way:
             new = min(new, 1.5 * here, self.limit)
         self.distance = new
         if is_close and abs(new - here) <= _NEAR * here and new <= self.limit:
-            self.ended = True
+            self.is_done = True
             if new < self.limit or excess > 0:
                 self.end = self._value
 
@@ -250,10 +250,10 @@ class _Way:
 
     def stop(self) -> None:
         """Take what brackets an end for it, where χ² jumps."""
-        if not self.ended and np.isfinite(self.above[0]):
+        if not self.is_done and np.isfinite(self.above[0]):
             self.distance = self.above[0]
             self.end = self._value
-        elif not self.ended:
+        elif not self.is_done:
             self._open = End.STEPS
 
 
@@ -262,7 +262,7 @@ def _followed(
 ) -> Minimum | None:
     """Follow all ways to their ends; return a lower minimum than theirs if one meets it."""
     for _ in range(_STEPS):
-        going = [way for way in ways if not way.ended]
+        going = [way for way in ways if not way.is_done]
         if not going:
             return None
         held = np.zeros((len(going), minimum.at.size), dtype=bool)
@@ -271,7 +271,7 @@ def _followed(
         for way, least in zip(going, minima, strict=True):
             if least.chi_squared < minimum.chi_squared - improvement:
                 return least
-            way.reached(least)
+            way.advance(least)
     for way in ways:
         way.stop()
     return None

@@ -22,7 +22,7 @@ _CHANCE = 3e-3
 """Probability that independent differences are taken for dependent ones."""
 
 
-def differenced(rows: Array, exponent: float) -> Array:
+def fractional_differences(rows: Array, exponent: float) -> Array:
     """Return the fractional differences (1 − B)^d along the first axis, of the same shape.
 
     Of noise whose power falls as f^(−2d) they are independent (Granger & Joyeux 1980; Hosking
@@ -55,10 +55,10 @@ def exponent_of(force: Array) -> float:
     values = force - np.mean(force)
 
     def misfit(exponent: float) -> float:
-        return float(np.sum(differenced(values, exponent) ** 2))
+        return float(np.sum(fractional_differences(values, exponent) ** 2))
 
     exponent = float(minimize_scalar(misfit, bounds=(0.0, _MOST), method="bounded").x)
-    rest = differenced(values, exponent)
+    rest = fractional_differences(values, exponent)
     variance = float(rest @ rest)
     if exponent < _LEAST or not variance:
         return 0.0

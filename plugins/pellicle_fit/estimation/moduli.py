@@ -38,7 +38,7 @@ def of_sines(fit: Candidate, number: int) -> list[dict[str, Estimate]]:
     K′ and K″ are measured, and so is the phase.  E* is complex for the contact of the explanation,
     whose uncertainty widens its interval, and not that of its law of relaxation.
     """
-    curve = fit.whole[number]
+    curve = fit.all_rows[number]
     if not curve.sines:
         return []
     stiffness = curve.sine_stiffness
@@ -73,7 +73,7 @@ def misfit(fit: Candidate, number: int) -> Misfit | None:
 
     None if all are as near as noise and instrument let them be.
     """
-    curve = fit.whole[number]
+    curve = fit.all_rows[number]
     if not curve.sines:
         return None
     known = fit.known[number]

@@ -12,7 +12,7 @@ from scipy.special import fdtrc, ndtri
 from pellicle.arrays import Array
 from pellicle_fit.contact.curve import Curve
 
-from .long_memory import differenced, exponent_of
+from .long_memory import exponent_of, fractional_differences
 
 CHANCE = 1e-3
 """Probability that a check flags a curve without fault."""
@@ -76,7 +76,7 @@ class ResidualCheck(NamedTuple):
     """Exponent d of correlated noise that was taken as white; 0 if it is not of that kind."""
 
     @property
-    def widened(self) -> float:
+    def widening(self) -> float:
         """The noise that is weighed over the deviation of what is left."""
         return self.noise.deviation / self.deviation
 
@@ -102,7 +102,10 @@ def check_residuals(
     """
     flaws, step = {Flaw.SLOW} if memory else set(), _step(curve.force)
     if memory:
-        residuals, jacobian = differenced(residuals, memory), differenced(jacobian, memory)
+        residuals, jacobian = (
+            fractional_differences(residuals, memory),
+            fractional_differences(jacobian, memory),
+        )
     before = (depth < -_NEAR * curve.span) & curve.first_pass
     least = max(_LEAST * curve.largest, step / np.sqrt(12))
     if has_spikes(residuals, least):
@@ -132,7 +135,7 @@ def check_residuals(
     bins = np.digitize(depth / max(float(depth.max()), 1e-300), _DEPTHS)
     # A second pass has bins of its own.
     bins += (len(_DEPTHS) + 1) * (curve.moves_out & curve.first_pass[0])
-    sums = binned(residuals, jacobian, np.where(before, -1, bins), 2 * (len(_DEPTHS) + 1))
+    sums = noise_of_bins(residuals, jacobian, np.where(before, -1, bins), 2 * (len(_DEPTHS) + 1))
     if sums and sums.exceeds(max(neighbour_noise(residuals[inside], least), far)):
         flaws.add(Flaw.PATTERN)
         noise = max(noise, Noise(sums.deviation, sums.freedom))
@@ -161,7 +164,7 @@ def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw],
     rest = (force - line @ np.linalg.lstsq(line[far], force[far], rcond=None)[0])[far]
     freedom = max(rest.size - 2, 1)
     noise = white = Noise(max(float(np.sqrt(np.sum(rest**2) / freedom)), least), freedom)
-    sums = binned(rest, line[far], np.arange(rest.size) * _BINS // rest.size, _BINS)
+    sums = noise_of_bins(rest, line[far], np.arange(rest.size) * _BINS // rest.size, _BINS)
     if sums and sums.exceeds(independent):
         flaws.add(Flaw.SLOW)
         noise = max(noise, sums)
@@ -181,7 +184,7 @@ def is_straight(curve: Curve) -> bool:
     force, base = (of[curve.first_pass] for of in (curve.force, curve.base))
     line = np.column_stack([np.ones(force.size), (base - base.mean()) / np.ptp(base)])
     rest = force - line @ np.linalg.lstsq(line, force, rcond=None)[0]
-    sums = binned(rest, line, np.arange(rest.size) * _BINS // rest.size, _BINS)
+    sums = noise_of_bins(rest, line, np.arange(rest.size) * _BINS // rest.size, _BINS)
     return not (sums and sums.exceeds(neighbour_noise(rest)))
 
 
@@ -200,7 +203,9 @@ def _dip(force: Array, trend: Array) -> tuple[float, int]:
     return min(dips)
 
 
-def binned(residuals: Array, jacobian: Array, bin_of: NDArray[np.intp], count: int) -> Noise | None:
+def noise_of_bins(
+    residuals: Array, jacobian: Array, bin_of: NDArray[np.intp], count: int
+) -> Noise | None:
     """Return the noise from sums over bins; None if no bin is left.
 
     A fit has made residuals orthogonal to the columns of its Jacobian, so these are projected out

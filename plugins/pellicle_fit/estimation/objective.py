@@ -17,7 +17,7 @@ from pellicle_fit.effect import Records, Responds, Weighed
 from pellicle_fit.explanation import Balance, columns_are_rows
 
 from .coordinates import CONTACT_POINT, Coordinates, Slot
-from .long_memory import differenced
+from .long_memory import fractional_differences
 from .search import Minimum, descend
 
 _STEP = 1e-6
@@ -89,7 +89,7 @@ class Objective(Coordinates):
         """Return differences of the forces of a curve [N], of shape (k, n), over its noise."""
         term = self.curves[i].weights * difference / self.noise[i]
         if self.memory and self.memory[i]:
-            term = differenced(term.T, self.memory[i]).T
+            term = fractional_differences(term.T, self.memory[i]).T
         return np.asarray(term)
 
     def _of_sines(self, at: Array) -> Array:

@@ -33,7 +33,7 @@ _GUESS = 0.03
 
 def starts(objective: Objective, known: Sequence[Candidate], *, scan: bool) -> list[Array]:
     """Return coordinates to start from: of minima of other explanations, and of a scan."""
-    coordinates, own = pooled(objective) if scan else [], list(_own(objective))
+    coordinates, own = pooled_start(objective) if scan else [], list(_own(objective))
     for candidate in known:
         # A search from a part of a part starts further off.
         if any(candidate.types < larger.types for larger in known):
@@ -53,15 +53,15 @@ def _own(objective: Objective) -> Iterator[Array]:
         yield np.array([slot.coordinate(value) for slot, value in slots])
 
 
-def pooled(objective: Objective) -> list[Array]:
+def pooled_start(objective: Objective) -> list[Array]:
     """Return the best of scans of each curve: medians of what the curves share."""
     if len(objective.curves) == 1:
-        return scanned(objective)
+        return scan_contact_points(objective)
     guesses = []
     for curve, noise in zip(objective.curves, objective.noise, strict=True):
         sizes = objective.sizes._replace(shallow_force=curve.shallow_force)
         alone = replace(objective, curves=(curve,), noise=(noise,), sizes=sizes, memory=())
-        minima = descend(alone.coarse, np.array(scanned(alone)), steps=_ROUGH)
+        minima = descend(alone.coarse, np.array(scan_contact_points(alone)), steps=_ROUGH)
         values = [alone.values(minimum.at).items() for minimum in minima]
         guesses.append([{name: value for (name, _), value in of} for of in values])
 
@@ -73,7 +73,7 @@ def pooled(objective: Objective) -> list[Array]:
     return [np.array([value(slot, known) for slot in objective.slots]) for known in several]
 
 
-def scanned(objective: Objective) -> list[Array]:
+def scan_contact_points(objective: Objective) -> list[Array]:
     """Return the best few of a scan of contact points for each start of the effects.
 
     With all forces of an explanation its recorded force grows: at each point one factor is linear.

@@ -71,7 +71,7 @@ def _of_suffix(path: Path) -> tuple[list[Reader], list[Reader]]:
 def _readers() -> list[Reader]:
     """Return a reader of each kind of file, strangers' first."""
     entries = registry().components[Reader.family].values()
-    ordered = sorted(entries, key=lambda entry: entry.origin.is_own)
+    ordered = sorted(entries, key=lambda entry: entry.origin.is_built_in)
     return [registry().make(Reader, {"type": entry.type}) for entry in ordered]
 
 

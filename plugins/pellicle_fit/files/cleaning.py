@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pellicle.arrays import Array
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, excerpt
 from pellicle.units import readable
 from pellicle_fit.sine import Sine
 
@@ -140,7 +140,8 @@ def _array(values: ArrayLike, name: str) -> Array:
         if not np.iscomplexobj(values) and (array := np.asarray(values, dtype=float)).ndim == 1:
             return array
     raise ConfigError(
-        f"{shown(values)} is not a list of real numbers; give SI values, one curve at a time", name
+        f"{excerpt(values)} is not a list of real numbers; give SI values, one curve at a time",
+        name,
     )
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, PlainSerializer
 
 from pellicle.arrays import Array
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, excerpt
 from pellicle.schema import Model, nearest
 from pellicle.units import Quantity, readable
 
@@ -48,7 +48,7 @@ def column_map(value: object) -> dict[str, str] | None:
         table = {name.strip(): role for name, _, role in entries}
     if not isinstance(table, Mapping) or "" in table:
         raise ConfigError(
-            f"{shown(value)} is not of the form 'Z = extension nm, Defl = deflection nm', or a "
+            f"{excerpt(value)} is not of the form 'Z = extension nm, Defl = deflection nm', or a "
             "table of the same"
         )
     roles: dict[str, tuple[str, str]] = {}
@@ -56,7 +56,7 @@ def column_map(value: object) -> dict[str, str] | None:
         role, *unit = str(text).split() or [""]
         role = role.lower()
         if role not in NAMES:
-            raise ConfigError(f"{shown(role)} is not a role; {nearest(role, NAMES)}", str(column))
+            raise ConfigError(f"{excerpt(role)} is not a role; {nearest(role, NAMES)}", str(column))
         if role in roles:
             raise ConfigError(f"{roles[role][0]!r} and {column!r} are both {role}")
         roles[role] = str(column), " ".join([role, *unit])
@@ -155,7 +155,7 @@ def is_curve(names: Set[str]) -> bool:
     return not names.isdisjoint(_SIGNALS) and not names.isdisjoint((*_OF_TIP, *_OF_BASE))
 
 
-def lacking(columns: Columns, calibration: Calibration) -> list[str]:
+def missing_parts(columns: Columns, calibration: Calibration) -> list[str]:
     """Return what is missing of a curve: columns or their units, then fields of a calibration."""
     place = next((name for name in (*_OF_TIP, *_OF_BASE) if name in columns), "")
     signals = [name for name in _SIGNALS if name in columns]
@@ -165,7 +165,7 @@ def lacking(columns: Columns, calibration: Calibration) -> list[str]:
     for name in (name for name in (place, *signals, "time") if name in columns):
         unit = columns[name].unit
         if si_unit(unit) not in [*UNITS.get(name, "m")]:
-            hint = f" ({shown(unit)} is not one of {name})" if unit else ""
+            hint = f" ({excerpt(unit)} is not one of {name})" if unit else ""
             lacks.append(f"the unit of {columns[name].name}{hint}")
     bends = place in _OF_BASE and "deflection" not in signals
     if calibration.spring_constant is None and (bends or signals == ["deflection"]):
@@ -179,7 +179,7 @@ def lacking(columns: Columns, calibration: Calibration) -> list[str]:
 
 @np.errstate(over="ignore", invalid="ignore")
 def from_columns(columns: Columns, calibration: Calibration) -> Measurement:
-    """Return the curve that columns hold, of which nothing is `lacking`.
+    """Return the curve that columns hold, which has no `missing_parts`.
 
     Force is ``force``, or the spring constant times ``deflection``, which may be in volts or
     amperes if the sensitivity is known.  Position is ``position`` or ``depth``, or else that of the
@@ -261,7 +261,7 @@ def check_signal(sensitivity: float, unit: str) -> None:
         )
 
 
-def recalibrated(curve: Measurement, calibration: Calibration, *, is_own: bool) -> Measurement:
+def recalibrate(curve: Measurement, calibration: Calibration, *, is_own: bool) -> Measurement:
     """Return a curve with the spring constant of a calibration in place of that of its file.
 
     The deflection, and so the position, is as it was: the force is scaled.  A sensitivity that is

@@ -6,9 +6,9 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, excerpt
 
-from .columns import NAMES, UNITS, Calibration, Column, Columns, lacking, plain, si_unit
+from .columns import NAMES, UNITS, Calibration, Column, Columns, missing_parts, plain, si_unit
 
 OPTIONS = {
     "spring_constant": '--spring-constant "… N/m"',
@@ -59,11 +59,11 @@ def missing_in(
     columns: Columns,
     calibration: Calibration,
 ) -> MissingInputError:
-    """Return the error of a curve of which something is `lacking`, with columns as `guessed`.
+    """Return the error of a curve that has `missing_parts`, with columns as of `guess_roles`.
 
     Of the names of columns, the ``wrong`` ones are those of no column, or of several.
     """
-    lacks = [*(f"one column {name!r}" for name in wrong), *lacking(columns, calibration)]
+    lacks = [*(f"one column {name!r}" for name in wrong), *missing_parts(columns, calibration)]
     options: dict[str, str] = {}
     if of_columns := [lack for lack in lacks if lack not in OPTIONS]:
         if len(heads) > SHOWN and not any(head.text for head in heads):
@@ -73,21 +73,21 @@ def missing_in(
             )
         typed = {text.split()[0]: name for name, text in (calibration.columns or {}).items()}
         known = {role: c._replace(name=typed.get(role, c.name)) for role, c in columns.items()}
-        roles = guessed(heads, known)
+        roles = guess_roles(heads, known)
         text = ", ".join(
             f"{roles[role].name} = {role} {roles[role].unit or '<unit>'}"
             for role in NAMES
             if role in roles
         )
         options = dict.fromkeys(of_columns, f'--columns "{text}"')
-        lacks = lacking(roles, calibration)
+        lacks = missing_parts(roles, calibration)
     options |= {lack: OPTIONS[lack] for lack in lacks if lack in OPTIONS}
-    names = [shown(head.text or head.name) for head in heads[:SHOWN]]
+    names = [excerpt(head.text or head.name) for head in heads[:SHOWN]]
     names += ["…"] if len(heads) > SHOWN else []
     return MissingInputError(f"{where} has {', '.join(names) or 'no columns'}; ", options)
 
 
-def guessed(heads: Sequence[Column], known: Columns) -> dict[str, Column]:
+def guess_roles(heads: Sequence[Column], known: Columns) -> dict[str, Column]:
     """Return columns by the roles that they may have; a unit that is not known is empty.
 
     Those that are ``known`` come first.

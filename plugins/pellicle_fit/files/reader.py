@@ -18,7 +18,7 @@ from pellicle.components import Component
 from pellicle.errors import PluginError, StorageError
 
 from .columns import Calibration as Calibration
-from .columns import Column, from_columns, lacking, recalibrated
+from .columns import Column, from_columns, missing_parts, recalibrate
 from .measurement import CurvesByLabel as CurvesByLabel
 from .measurement import Measurement as Measurement
 from .measurement import Site as Site
@@ -97,10 +97,10 @@ def curve_of(
         sensitivity=calibration.sensitivity or sensitivity,
         speed=calibration.speed,
     )
-    if lacks := lacking(made, own):
+    if lacks := missing_parts(made, own):
         raise MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in lacks})
     curve = replace(from_columns(made, own), site=site, pause=pause, messages=messages)
-    return recalibrated(curve, calibration, is_own=True)
+    return recalibrate(curve, calibration, is_own=True)
 
 
 def sections_of(

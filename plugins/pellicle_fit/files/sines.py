@@ -81,7 +81,7 @@ class _Found(NamedTuple):
         return np.asarray((self.parts.base * turn).real)
 
 
-class Separated(NamedTuple):
+class SineSeparation(NamedTuple):
     """A curve without its sines, and these."""
 
     position: Array
@@ -101,7 +101,7 @@ def separate(
     stiffness: float | None,
     frequencies: Sequence[float],
     lag: float,
-) -> Separated:
+) -> SineSeparation:
     """Return a curve without its sines of some frequencies [Hz], and these beside it.
 
     The rows are in order of time.  The force may be read a ``lag`` [s] after the position.  What is
@@ -159,7 +159,7 @@ def separate(
     )
     # The base has no noise, so it is what is shifted.
     load, way = slow[1, left], np.interp(time - lag, time, slow[0])[left]
-    return Separated(way - softness * load, load, left, tuple(sines), notes)
+    return SineSeparation(way - softness * load, load, left, tuple(sines), notes)
 
 
 def _common(span: _Span, beside: Sequence[_Span]) -> tuple[float, float, float]:

@@ -48,7 +48,7 @@ class Source(NamedTuple):
     total: int = 0
     """Number of all curves, of files that were not opened yet one each; 0 if it is not known."""
 
-    def named(self, error: PellicleError, hint: str = "") -> ConfigError:
+    def with_name(self, error: PellicleError, hint: str = "") -> ConfigError:
         """Return an error with the name of the source in front, once, and a hint at the end."""
         return ConfigError(f"{self.name}: {self.reason(error)}{hint}")
 
@@ -113,7 +113,7 @@ def _listed(
         files = [(name, {}, name) for name in curves]
     else:
         paths = [curves] if isinstance(curves, (str, Path)) else curves
-        expanded_paths = [path for text in paths for path in expanded(text)]
+        expanded_paths = [path for text in paths for path in expand_pattern(text)]
         files = [file for path in expanded_paths for file in _files(path, mapped)]
     if not files:
         raise ConfigError("holds no curve; give files, or a folder of them", "curves")
@@ -128,7 +128,7 @@ def _listed(
         yield file, {name: values[number] for name, values in per_file.items()} | listed, table
 
 
-def expanded(pattern: str | Path, folder: str | Path = "") -> list[Path]:
+def expand_pattern(pattern: str | Path, folder: str | Path = "") -> list[Path]:
     """Return the files that match a pattern such as ``"beads/*.csv"``; any other path as it is."""
     path = Path(folder, pattern)
     if exists(path) or not has_magic(str(pattern)):
@@ -160,7 +160,7 @@ def _files(path: Path, mapped: Mapping[str, str]) -> list[tuple[Path, dict[str, 
     return [
         (file, fields, path)
         for name, fields in listed
-        for one in expanded(name, path.parent)
+        for one in expand_pattern(name, path.parent)
         for file in (_in_folder(one) if is_folder(one) else [one])
     ]
 
@@ -207,7 +207,7 @@ def read_curves(path: str | Path, **calibration: Any) -> dict[str, Measurement]:
         if isinstance(source.curve, Measurement):
             curves[source.name] = source.curve
         else:
-            errors.append(source.named(source.curve))
+            errors.append(source.with_name(source.curve))
     if not curves:
         raise ConfigError("\n".join(map(str, errors)))
     for error in errors:

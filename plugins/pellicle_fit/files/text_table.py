@@ -15,7 +15,7 @@ from pellicle.memory import require_for
 
 from .columns import EXAMPLE, NAMES, Calibration, Column, Columns, is_curve, plain, si_unit
 from .decimal_commas import is_amount, is_number, numbers, refuse_wide, set_points
-from .missing import UNKNOWN, guessed
+from .missing import UNKNOWN, guess_roles
 
 FILE = "file"
 """Name of the column of a table that lists files."""
@@ -174,7 +174,7 @@ def _header(
     width = len(_heads(lines[data[-1]]))
     alike = {number: columns for number, columns in heads.items() if len(columns) == width}
     for number, columns in () if mapped else alike.items():
-        if all(column.name != UNKNOWN for column in guessed(columns, {}).values()):
+        if all(column.name != UNKNOWN for column in guess_roles(columns, {}).values()):
             return number, columns
     if data[0] in heads:
         return data[0], heads[data[0]]
@@ -277,7 +277,7 @@ def read_table(
     known = mapped or {name: name for name in names if name in NAMES}
     if is_export and not mapped:
         # The position of the tip is that of a height, and time, unlike seriesTime, begins anew.
-        roles = guessed([head for head in heads if "tip" not in head.name.lower()], {})
+        roles = guess_roles([head for head in heads if "tip" not in head.name.lower()], {})
         if "height" in roles:
             known = {c.name: role for role, c in roles.items() if c.name != UNKNOWN}
     columns, places = {}, dict[str, int]()

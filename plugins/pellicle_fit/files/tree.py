@@ -14,7 +14,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError, StorageError
 from pellicle.memory import require_for
-from pellicle.schema import fault_of_packing, fault_of_source, measured, read_mat, unpacked_size
+from pellicle.schema import fault_of_packing, fault_of_source, hdf5_numbers, read_mat, unpacked_size
 
 from .columns import NAMES, Column, Columns
 from .missing import SHOWN
@@ -106,7 +106,7 @@ def _curves(
                 raise ConfigError(f"{file}: {reason}")
             total += array.size
             _require(8.0 * total + _BYTES_PER_ROW * max(array.shape, default=1), file)
-            values: Array = np.asarray(array if is_matlab else measured(array), dtype=float)
+            values: Array = np.asarray(array if is_matlab else hdf5_numbers(array), dtype=float)
             rows = {"": values.ravel()}
             if values.squeeze().ndim > 1:
                 values = np.moveaxis(values, 0, -1) if is_matlab else values

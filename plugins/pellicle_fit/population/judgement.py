@@ -11,14 +11,14 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from pellicle.errors import ConfigError, StorageError, shown
+from pellicle.errors import ConfigError, StorageError, excerpt
 from pellicle.files import read_text
 from pellicle.schema import evaluate, names_in, nearest
-from pellicle.units import one, readable, split
+from pellicle.units import readable, split, unit_quantity
 from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.selection.verdict import Verdict
 
-from .row import Row, counted, units
+from .row import Row, accepted_estimates, units
 
 _SIGNS: dict[str, Callable[[float, float], bool]] = {
     "<=": operator.le,
@@ -42,7 +42,7 @@ class Rule:
     """One or two comparisons of expressions and quantities; names and dimensions are checked."""
 
     def __init__(self, text: str) -> None:
-        rule, unit_of = shown(text), units()
+        rule, unit_of = excerpt(text), units()
         parts = [part.strip() for part in _COMPARISON.split(text)]
         self.text, self._signs, sides = text, parts[1::2], parts[::2]
         self._sides: list[float | str] = []
@@ -53,9 +53,12 @@ class Rule:
             is_quantity = unit[:1].isalpha()
             names = set[str]() if is_quantity else names_in(side)
             for name in sorted(names - unit_of.keys()):
-                raise ConfigError(f"{shown(name)} in {rule}: {nearest(name, unit_of)}")
-            ones = {name: 1.0 if unit_of[name] == "1" else one(unit_of[name]) for name in names}
-            value = number * one(unit) if is_quantity else evaluate(side, ones)
+                raise ConfigError(f"{excerpt(name)} in {rule}: {nearest(name, unit_of)}")
+            ones = {
+                name: 1.0 if unit_of[name] == "1" else unit_quantity(unit_of[name])
+                for name in names
+            }
+            value = number * unit_quantity(unit) if is_quantity else evaluate(side, ones)
             # A bare number is in SI.
             if is_quantity or names:
                 dimensions[str(getattr(value, "dimensionality", "dimensionless"))] = side
@@ -124,7 +127,7 @@ def judge(rows: Sequence[Row], rules: Sequence[str], rejected: Names | None) -> 
     checks, notes = [Rule(text) for text in rules], []
     if rejected:
         used = {rejected.entry(row) for row in rows}
-        unknown = [shown(name) for name in rejected.reasons if name not in used]
+        unknown = [excerpt(name) for name in rejected.reasons if name not in used]
         notes += [f"{rejected.path} names {n}, which is none of the curves" for n in unknown]
     for row in rows:
         if not row.is_fitted:
@@ -158,7 +161,7 @@ def outliers(rows: Sequence[Row]) -> list[Row]:
     The deviation is 1.4826 times the median absolute deviation, which some of the outliers
     themselves do not change (Iglewicz and Hoaglin, 1993).
     """
-    found = counted(rows, MODULUS)
+    found = accepted_estimates(rows, MODULUS)
     known = [(e.value, e.low or 0.0, np.inf if e.high is None else e.high) for e in found.values()]
     with np.errstate(divide="ignore"):
         values = np.log(np.reshape(known, (-1, 3)))

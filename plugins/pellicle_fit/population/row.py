@@ -128,7 +128,7 @@ class Row:
         return row | judgement | self.fit.data
 
 
-def counted(rows: Iterable[Row], name: str) -> dict[Row, Estimate]:
+def accepted_estimates(rows: Iterable[Row], name: str) -> dict[Row, Estimate]:
     """Return the estimate of a quantity of each accepted row that has one.
 
     Intervals of any width count: without the open ones, the stiffest curves would be chosen.  A

@@ -27,8 +27,8 @@ from pellicle_fit.files.columns import (
     Column,
     check_signal,
     from_columns,
-    lacking,
-    recalibrated,
+    missing_parts,
+    recalibrate,
 )
 from pellicle_fit.files.measurement import CurvesByLabel, Measurement, Site
 from pellicle_fit.files.missing import OPTIONS, MissingInputError
@@ -305,7 +305,7 @@ def _curve(
         if constant is None or (isinstance(constant, float) and not 0 < constant < np.inf):
             constant = calibration.spring_constant
         own = Calibration(spring_constant=constant, speed=calibration.speed)
-        if lacks := lacking(columns, own):
+        if lacks := missing_parts(columns, own):
             raise MissingInputError(f"{path}: ", {name: OPTIONS.get(name, "") for name in lacks})
         curve, site = from_columns(columns, own), None
         # Files that were converted may hold a text with a unit.
@@ -315,7 +315,7 @@ def _curve(
     origin = curve.origin._replace(sensitivity=metadata.get("sensitivity"), library="afmformats")
     messages = (_NT_MDT,) * is_nt_mdt + (DRIVEN,) * (place == "height (piezo)")
     curve = replace(curve, origin=origin, site=site, messages=messages, pause=pause)
-    return recalibrated(curve, calibration, is_own=True)
+    return recalibrate(curve, calibration, is_own=True)
 
 
 def _pause(data: Mapping[str, Any], metadata: Mapping[str, Any]) -> Mask | None:

@@ -21,8 +21,8 @@ from pellicle_fit.files.columns import (
     Columns,
     from_columns,
     is_curve,
-    lacking,
-    recalibrated,
+    missing_parts,
+    recalibrate,
 )
 from pellicle_fit.files.measurement import CurvesByLabel, Measurement
 from pellicle_fit.files.missing import missing_in
@@ -83,7 +83,7 @@ def _curves(
     known = Calibration(**{**stated, **calibration.model_dump(exclude_none=True)})
 
     def curve(label: str, columns: Columns) -> Measurement:
-        if not wrong and not lacking(columns, known):
+        if not wrong and not missing_parts(columns, known):
             own = known.model_copy(update={**stated, "sensitivity": known.sensitivity})
             measured, spring_constant = from_columns(columns, own), calibration.spring_constant
             if (
@@ -97,7 +97,7 @@ def _curves(
                     f"{readable(second, 'N/m')} times its deflection; give the one that holds",
                     "spring_constant",
                 )
-            return recalibrated(measured, calibration, is_own=bool(stated))
+            return recalibrate(measured, calibration, is_own=bool(stated))
         where = f"{path}: curve {label}" if label else str(path)
         raise missing_in(f"{where}:", heads, wrong, columns, known)
 

@@ -35,7 +35,7 @@ def sheets(rows: Sequence[Row], words: str = "") -> list[Callable[[Figure], None
     return [partial(_page, page, f"page {k} of {count}{words}") for k, page in enumerate(pages, 1)]
 
 
-def chosen(rows: Sequence[Row], pages: int) -> tuple[Sequence[Row], str]:
+def choose_curves(rows: Sequence[Row], pages: int) -> tuple[Sequence[Row], str]:
     """Return the curves that so many pages show, and which these are; of all no words.
 
     Those that were not fitted, not accepted or stand out have half of the room.

@@ -25,7 +25,7 @@ from pellicle_fit.result import Fit
 from pellicle_fit.selection.recipe import TENSION
 from pellicle_fit.words.names import words_of
 
-from .contact_sheet import PAGE, chosen, sheets
+from .contact_sheet import PAGE, choose_curves, sheets
 from .likelihood_map import likelihood_map
 from .population import bars, distributions, guide, map_figure
 
@@ -62,7 +62,7 @@ def panels(fit: Fit | ManyFits) -> dict[str, Drawing]:
         caption = f"{title}: grey where there is no accepted fit or no value, hatched where one "
         caption += "end of the interval is open."
         found[caption] = map_figure(images, title)
-    rows, words = chosen(fit.rows, _PAGES)
+    rows, words = choose_curves(fit.rows, _PAGES)
     which, pages = (
         "Some curves with their fits" if words else "Each curve with its fit",
         sheets(rows),
@@ -85,7 +85,7 @@ def charts(fit: Fit) -> dict[str, list[Chart]]:
         beside = f", and {words_of(rival)}" if rival else ""
         caption = f"Data, the fit, by {words_of(selected)}{beside}; below, residuals."
     found = {caption: [_curves(fit, rival)]}
-    if any(map(_has_hold, selected.whole)):
+    if any(map(_has_hold, selected.all_rows)):
         found |= {"Force over time, with its hold; line, the fit.": [_over_time(fit)]}
     if fit.sines:
         caption = "Storage and loss modulus of the sines, with 95 % intervals; lines, by "
@@ -130,7 +130,7 @@ def _curves(fit: Fit, rival: Candidate | None = None) -> Chart:
     """Return data and fits over the indentation, of several curves over its largest; residuals."""
     selected, forces, count, series = fit.answer.selected, fit.forces(), len(fit.curves), []
     subtracted, depths = False, selected.depths
-    for number, (curve, force) in enumerate(zip(selected.whole, forces, strict=True)):
+    for number, (curve, force) in enumerate(zip(selected.all_rows, forces, strict=True)):
         known = selected.known[number]
         baseline, turn = known.free_force(curve), int(curve.moves_out.argmax())
         subtracted, data = subtracted or bool(baseline.any()), curve.force - baseline
@@ -174,7 +174,7 @@ def _has_hold(curve: Curve) -> bool:
 def _over_time(fit: Fit) -> Chart:
     """Return force and fit over the time since the first row, of each curve with a hold."""
     series = list[Series]()
-    pairs = zip(fit.answer.selected.whole, fit.forces(), strict=True)
+    pairs = zip(fit.answer.selected.all_rows, fit.forces(), strict=True)
     for number, (curve, force) in enumerate(pairs):
         if not _has_hold(curve):
             continue
@@ -188,7 +188,7 @@ def _over_time(fit: Fit) -> Chart:
 def _moduli(fit: Fit) -> Chart:
     """Return E′ and E″ of the reduced modulus over frequency, measured and by the explanation."""
     selected, series, rows = fit.answer.selected, list[Series](), iter(fit.sines)
-    for number, (known, curve) in enumerate(zip(selected.known, selected.whole, strict=True)):
+    for number, (known, curve) in enumerate(zip(selected.known, selected.all_rows, strict=True)):
         if not curve.sines:
             continue
         told = [next(rows) for _ in curve.sines]

@@ -29,7 +29,7 @@ def likelihood_map(explained: Candidate, widened: float) -> Chart:
     moves as this makes χ² least, as do errors of the calibration that are weighed. Δχ² at the edges
     is ``widened`` for curves that do not agree.
     """
-    objective, best = explained.weighed or (explained.objective, explained.minimum)
+    objective, best = explained.calibration_minimum or (explained.objective, explained.minimum)
     names = [slot.name for slot in objective.slots]
     e, t = names.index(MODULUS), names.index(TENSION)
     rest = [k for k in range(len(names)) if k not in (e, t)]

@@ -17,11 +17,11 @@ from pellicle.units import axis_unit
 from pellicle_fit.estimation.coordinates import MODULUS
 from pellicle_fit.population.fits import ManyFits, common_error, label
 from pellicle_fit.population.images import CONTACT_HEIGHT, VERDICT
-from pellicle_fit.population.row import SHOWN, Row, counted
+from pellicle_fit.population.row import SHOWN, Row, accepted_estimates
 from pellicle_fit.selection.recipe import TENSION
 from pellicle_fit.words.names import words
 
-from .contact_sheet import PAGE, chosen, sheets
+from .contact_sheet import PAGE, choose_curves, sheets
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -85,7 +85,7 @@ def distributions(rows: Sequence[Row]) -> list[Chart]:
     charts = list[Chart]()
     groups = list(dict.fromkeys(label(row.group) for row in rows if row.accepted))
     for name, unit in _DRAWN.items():
-        found = counted(rows, name)
+        found = accepted_estimates(rows, name)
         if not all(row.fit.has_no_sign(name) for row in found):
             values = np.array([e.value for e in found.values()])
             is_wide = name == MODULUS and bool(values.max() > _DECADE * values.min())
@@ -214,7 +214,7 @@ def save_population(
     """
     from PIL import Image
 
-    rows, words = (fits.rows, "") if pages is None else chosen(fits.rows, pages)
+    rows, words = (fits.rows, "") if pages is None else choose_curves(fits.rows, pages)
     files = [save_pages(sheets(rows, words), directory / "fits-curves.pdf", PAGE)]
     if charts := distributions(fits.rows):
         draw, size = figure_of(charts)

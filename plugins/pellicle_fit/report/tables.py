@@ -14,7 +14,7 @@ from pellicle_fit.population.fits import QUARTILES, summary
 from pellicle_fit.population.row import FITTED, SHOWN, Row
 from pellicle_fit.record import OVER_TIED, Record
 from pellicle_fit.selection.recipe import TENSION
-from pellicle_fit.words.names import FEW, interval, quoted, unit_of, unit_of_one, words
+from pellicle_fit.words.names import FEW, interval, quote_estimate, scale_of, unit_of, words
 
 _OPEN = {*End} - {End.CLOSED, End.NOT_SOUGHT}
 """What an end is that needs a reason."""
@@ -199,7 +199,7 @@ def _unit(fit: Record, name: str, si: bool) -> Scale:
     """Return the unit of a quantity in all tables of a fit: its own or, if it is 0, of rivals."""
     own = fit.estimates()[name]
     if own.value or own.high:
-        return unit_of_one(own, si=si)
+        return scale_of(own, si=si)
     others = (one["parameters"].get(name) for one in fit.data["explanations"])
     return unit_of([e["value"] for e in others if e is not None], own.unit, si=si)
 
@@ -221,7 +221,7 @@ def _quantity(
     """Return the column of a quantity, with intervals that were ``sought``; none if all lack it."""
     of = [None if e is None or (e.held and not e.value) else e for e in of]
     texts = [
-        (quoted(e, unit, digits) if wanted else unit.number(e.value, digits)) if e else ""
+        (quote_estimate(e, unit, digits) if wanted else unit.number(e.value, digits)) if e else ""
         for e, wanted in zip(of, sought or [True] * len(of), strict=True)
     ]
     head = f"{words(name)} [{unit.unit}]"

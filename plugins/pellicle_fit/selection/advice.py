@@ -12,7 +12,7 @@ from pellicle_fit.estimation.candidate import Candidate
 from pellicle_fit.estimation.coordinates import CONTACT_POINT
 from pellicle_fit.estimation.noise import FEWEST, Flaw
 
-from .forecast import telling
+from .forecast import telling_measurement
 from .recipe import DRAINING, Answer
 from .verdict import Verdict
 
@@ -78,7 +78,7 @@ def _of_input(answer: Answer) -> Iterator[Advice]:
     """Yield what is probably wrong with radius or units."""
     selected = answer.selected
     depths = selected.depths
-    for curve, of_rows in zip(selected.whole, depths, strict=True):
+    for curve, of_rows in zip(selected.all_rows, depths, strict=True):
         radius, depth = getattr(curve.indenter, "radius", None), float(np.max(of_rows))
         if radius and not _DEPTHS[0] <= depth / radius <= _DEPTHS[1]:
             yield Advice(Remedy.CHECK_RADIUS, {"depth": depth, "radius": radius})
@@ -122,6 +122,6 @@ def _of_options(
 
 def _measurement(target: Candidate, others: Sequence[Candidate]) -> Advice | None:
     """Return what to measure, so that explanations can be told apart; None if nothing would do."""
-    proposal, curves = telling(target, others)
+    proposal, curves = telling_measurement(target, others)
     known = {"proposal": proposal, "curves": curves}
     return Advice(Remedy.MEASURE, known) if proposal else None

@@ -51,7 +51,9 @@ class Proposal(NamedTuple):
     """Time of a dwell [s], speed [m/s], largest depth or radius [m]."""
 
 
-def telling(target: Candidate, others: Sequence[Candidate]) -> tuple[Proposal | None, int]:
+def telling_measurement(
+    target: Candidate, others: Sequence[Candidate]
+) -> tuple[Proposal | None, int]:
     """Return the measurement that tells an explanation from others that are as good now, if any.
 
     Beside it stands how many curves of this kind it takes.
@@ -87,7 +89,8 @@ def measurements(fit: Candidate) -> Iterator[tuple[Proposal, Curve]]:
 
     This has no forces yet, and positions of the base over the contact point [m].
     """
-    curve, point, body = fit.whole[0], fit.contact_points[0], cast("Any", fit.whole[0].indenter)
+    curve, point = fit.all_rows[0], fit.contact_points[0]
+    body = cast("Any", curve.indenter)
     low, high = float(curve.base.min()) - point, float(curve.base.max()) - point
     down = np.linspace(low, high, _ROWS)
     duration = curve.loading_time
@@ -136,8 +139,8 @@ def _foretold(truth: Candidate, planned_curve: Curve) -> tuple[Curve, ...]:
 
     They have no noise and touch at 0.
     """
-    curve, known = truth.whole[0], truth.known[0]
-    means, (point, *_) = curve.binned(_ROWS), truth.contact_points
+    curve, known = truth.all_rows[0], truth.known[0]
+    means, (point, *_) = curve.bin_means(_ROWS), truth.contact_points
     again = replace(means, position=means.base - point, stiffness=None, touch=None)
     # Each row of a forecast stands for as many as the curve has.
     counts = np.full(planned_curve.position.size, curve.passes[0].size / _ROWS)

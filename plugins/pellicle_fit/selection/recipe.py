@@ -18,7 +18,7 @@ from pellicle_fit.estimation.candidate import NONE, Candidate, Types, best_of
 from pellicle_fit.estimation.coordinates import CONTACT_POINT, MODULUS
 from pellicle_fit.estimation.intervals import End, Estimate, common_value, estimates, threshold_of
 from pellicle_fit.estimation.noise import CHANCE, ResidualCheck
-from pellicle_fit.strangers import refuse_broken, strangers_named
+from pellicle_fit.strangers import name_strangers, refuse_broken
 
 from .baseline import baseline_of, named
 from .neighbour import Neighbour
@@ -75,7 +75,7 @@ class Answer:
         radii or speeds also do if it has drained by then, or not yet.
         """
         fit = self.selected
-        if fit.known[0].of(Responds) or any(curve.rests.any() for curve in fit.whole):
+        if fit.known[0].of(Responds) or any(curve.rests.any() for curve in fit.all_rows):
             return False
         return any(DRAINING in other.types for other in self.explanations)
 
@@ -104,7 +104,7 @@ class Answer:
 
     def chi_squared(self, fit: Candidate) -> float:
         """Return χ² of an explanation at the noise that is told, which is not widened."""
-        return fit.chi_squared_of([checked.widened for checked in self.judgements])
+        return fit.chi_squared_of([checked.widening for checked in self.judgements])
 
     @property
     def if_present(self) -> Mapping[str, Estimate]:
@@ -112,7 +112,7 @@ class Answer:
         if self.verdict is not Verdict.NO_SIGN or not self.question.of_target:
             return {}
         beside = next(fit for fit in self.tied if fit.types == self.question.of_target)
-        own = {name: beside.parameters[name] for name in self.question.wanted}
+        own = {name: beside.parameters[name] for name in self.question.open_quantities}
         return {MODULUS: self.over_tied(MODULUS, self.tied)} | own
 
     def over_tied(self, name: str, tied: Sequence[Candidate] = ()) -> Estimate:
@@ -175,12 +175,12 @@ class Agreement(NamedTuple):
 
 def agreement_of(fit: Candidate) -> Agreement:
     """Return whether curves agree on the quantities that they share."""
-    count = len(fit.whole)
+    count = len(fit.all_rows)
     shared = sum(slot.curve is None for slot in fit.objective.slots)
     if count == 1 or not shared:
         return Agreement(0.0, 0, 0)
     # What is weighed beside the rows does not scale with their noise.
-    fit = fit.polished()
+    fit = fit.polish()
     objective = fit.of_rows
     values, rises = objective.values(fit.minimum.at), []
     for i in range(count):
@@ -194,7 +194,7 @@ def agreement_of(fit: Candidate) -> Agreement:
     return Agreement(max(sum(rises), 0.0), shared * (count - 1), int(np.argmax(rises)))
 
 
-def timed(curves: Sequence[Curve]) -> tuple[Curve, ...]:
+def with_times(curves: Sequence[Curve]) -> tuple[Curve, ...]:
     """Return curves with times.
 
     Those whose times are not known have one speed, at which the longest takes 1 s.
@@ -207,7 +207,7 @@ def timed(curves: Sequence[Curve]) -> tuple[Curve, ...]:
     )
 
 
-@strangers_named()
+@name_strangers()
 def answer(
     curves: Sequence[Curve],
     model: Sequence[Effect],
@@ -236,7 +236,7 @@ def answer(
     sets = tuple(map(tuple, rivals))
     for effect in (*model, *common, *chain(*sets), *uncertainty):
         refuse_broken(effect)
-    curves = timed(curves)
+    curves = with_times(curves)
     target = next((effect for effect in model if not isinstance(effect, Records)), None)
     near = like[0].baseline if like else NONE
     baseline = named(near - {effect.type_name for effect in common}, sets)
@@ -282,13 +282,13 @@ def answer(
     responses = {types: known.of(Responds) for types, known in alone.items() if known}
     untried = [types for types, own in responses.items() if any(e.type_name in types for e in own)]
     # Of what no model describes few ends are worth seeking; none if what may be right has no model.
-    own = (MODULUS, TENSION, CONTACT_POINT, *question.wanted) if undescribed else ()
+    own = (MODULUS, TENSION, CONTACT_POINT, *question.open_quantities) if undescribed else ()
     rise, tied = (
         np.inf if undescribed and untried else threshold,
         ties(fits, of_target, decided, selected),
     )
     for types in tied:
-        names = own if types == selected else (MODULUS, TENSION, *question.wanted)
+        names = own if types == selected else (MODULUS, TENSION, *question.open_quantities)
         fits[types] = with_estimates(fits[types], rise, uncertainty, names)
     return Answer(
         tuple(sorted(fits.values(), key=lambda fit: fit.aic)),
@@ -317,7 +317,7 @@ def _elsewhere(
     simple = {NONE: fits[NONE], question.of_target: fits[question.of_target]}
     of = [fit.objective.explanation for fit in simple.values()]
     free = dict(zip(simple, (replace(one, solid=solid) for one in of), strict=True))
-    curves = tuple(replace(curve, touch=None) for curve in fits[NONE].whole)
+    curves = tuple(replace(curve, touch=None) for curve in fits[NONE].all_rows)
     memory = fits[NONE].objective.memory
     elsewhere = best_of(comparison(question.of_target, free, curves, memory=memory).values())
     moved = frozenset({CONTACT_POINT})
@@ -330,7 +330,7 @@ def with_estimates(
     fit: Candidate, threshold: float, extra: Sequence[Effect], names: Sequence[str]
 ) -> Candidate:
     """Return an explanation with the estimates of some of its quantities, or of all."""
-    fit = fit.polished()
+    fit = fit.polish()
     objective, minimum = fit.objective, fit.minimum
     accuracy = max(
         known.accuracy(curve) * curve.largest / noise
@@ -341,5 +341,5 @@ def with_estimates(
         minimum = objective.minimise(at)
     minimum, intervals = estimates(objective, minimum, threshold * max(1.0, accuracy) ** 2, names)
     if extra:
-        return replace(fit, estimates=intervals, weighed=(objective, minimum))
+        return replace(fit, estimates=intervals, calibration_minimum=(objective, minimum))
     return replace(fit, estimates=intervals, minimum=minimum)

@@ -55,7 +55,7 @@ class Question:
         return frozenset({self.target.type_name}) if self.target else NONE
 
     @property
-    def wanted(self) -> list[str]:
+    def open_quantities(self) -> list[str]:
         """Open quantities of what is asked for and of what is kept, unless it is a baseline."""
         own = (e for e in (self.target, *self.common) if e and not isinstance(e, (Adds, Records)))
         return [name for effect in own for name in effect.open]
@@ -95,11 +95,11 @@ def comparison(
     sizes = Sizes.of_curve(curves[0])
     of = Objective(candidates[NONE], curves, sizes, sizes.time, noise, memory)
     rows = _ROWS if len(candidates) > _FEW else _ROWS_OF_FEW
-    means = tuple(curve.binned(rows) for curve in curves)
+    means = tuple(curve.bin_means(rows) for curve in curves)
     simple = _sought(
         {types: candidates[types] for types in (NONE, of_target)}, of_target, {}, of, means, None
     )
-    simple = at_common_noise({types: fit.polished() for types, fit in simple.items()})
+    simple = at_common_noise({types: fit.polish() for types, fit in simple.items()})
     best = best_of(simple.values())
     if not memory and any(memories := tuple(checked.memory for checked in best.judgements)):
         fits = comparison(of_target, candidates, curves, like, memories)
@@ -113,11 +113,11 @@ def comparison(
     # Beside so much noise a search ends far from the least χ² at that of the best.
     while _falls(best_of(simple.values()), best := best_of(fits.values())):
         simple = {types: fits[types] for types in (NONE, of_target, best.types)}
-        simple[best.types] = best.polished()
+        simple[best.types] = best.polish()
         fits = _compared(candidates, of_target, simple, means, like)
     # The modulus of the end of the loading is that after the time since the best first touch.
     best = best_of(fits.values())
-    pairs = zip(best.whole, best.contact_points, strict=True)
+    pairs = zip(best.all_rows, best.contact_points, strict=True)
     times = [curve.time_in_contact(point) for curve, point in pairs]
     time = float(np.exp(np.mean(np.log(times))))
     return {types: fit.relaxed_for(time) for types, fit in fits.items()}
@@ -145,7 +145,7 @@ def _compared(
     if like is None:
         fits = {types: _restarted(fit, of_target, fits) for types, fit in fits.items()}
     ends = {t: _end(t, of_target, fits, _NEAR) for t in fits}
-    fits = {t: f.polished() if f.aic < ends[t] else f for t, f in fits.items()}
+    fits = {t: f.polish() if f.aic < ends[t] else f for t, f in fits.items()}
     return at_common_noise(_nearest_sought(fits, of_target))
 
 
@@ -192,7 +192,7 @@ def _nearest_sought(fits: Fits, of_target: Types) -> Fits:
         )
         if nearest.types in sought:
             return explanations
-        explanations[nearest.types] = nearest.polished()
+        explanations[nearest.types] = nearest.polish()
         sought.add(nearest.types)
 
 

@@ -14,8 +14,8 @@ from pellicle.errors import ConfigError, problems_within
 from pellicle_axisymmetric import BodyOfRevolution
 from pellicle_fit.contact.soft_bead import SoftBead
 
-from .interpolated import tensed
-from .simulation import GRID_POINTS, plan, solved
+from .interpolated import tensed_depths
+from .simulation import GRID_POINTS, plan, solve_contacts
 from .solid import UnitKernel
 
 _SKIN = "tensed_membrane"
@@ -53,7 +53,7 @@ def soft_bead(
     """Return a bead of a reduced modulus [Pa] and a tension [N/m] down to a depth [m].
 
     If it or the sample may have ``skins``, pairs of both are simulated; ``options`` are those of
-    `solved`.
+    `solve_contacts`.
     """
     if not isinstance(rigid, BodyOfRevolution):
         raise ConfigError("is no body of revolution; a bead that yields has to be", "indenter")
@@ -66,7 +66,7 @@ def soft_bead(
     # Depths are rounded up, by less than twice; a sphere ends at its equator.
     deepest = min(deepest, 0.4 * rigid.depth_limit)
     depths, _, study = plan(rigid, pair, deepest, grid_points)
-    rows = tensed(depths)
+    rows = tensed_depths(depths)
     lengths, _, softer = bead.nodes(rows)
     parts = (rows[:, None, None], lengths, 1 / softer)
     depth, length, own = (part.ravel() for part in np.broadcast_arrays(*parts))
@@ -83,7 +83,7 @@ def soft_bead(
         "grid.size": 2 * _EDGE * np.outer(radii[chosen], [1.0, 1.0]),
         "grid.points": np.array(points),
     }
-    forces = solved(study, contacts, **options)["force"].values.ravel()
+    forces = solve_contacts(study, contacts, **options)["force"].values.ravel()
     accuracy = float(np.max(np.abs(forces[depth.size :] / forces[middle] - 1)))
     return replace(
         bead, depths=rows, forces=forces[: depth.size].reshape(softer.shape), accuracy=accuracy

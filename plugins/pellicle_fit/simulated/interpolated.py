@@ -21,7 +21,7 @@ _TENSED = 3
 """Depths at which a tension acts as well."""
 
 
-def tensed(values: Array) -> Array:
+def tensed_depths(values: Array) -> Array:
     """Return those at the depths where a tension acts as well: every second of the deepest.
 
     At shallower ones what is left changes little, and less of the force depends on it.
@@ -40,7 +40,7 @@ class SimulatedCurve:
     body: EquivalentBody
     """The body, with the nodes of the depth."""
     forces: Array | None = None
-    """F/E* [m²] under tension at `tensed` depths and the nodes of x, of shape (k, n)."""
+    """F/E* [m²] under tension at `tensed_depths` and the nodes of x, of shape (k, n)."""
     accuracy: float = 0.0
     """Largest relative change of some forces when the cells along each axis are halved."""
     half_space: bool = True
@@ -54,7 +54,7 @@ class SimulatedCurve:
     @cached_property
     def nodes(self) -> tuple[Array, Array, Array]:
         """Return s [m], and force over F₀ and contact radius over a₀ of the body, at `RATIOS`."""
-        depths = tensed(self.body.depths)
+        depths = tensed_depths(self.body.depths)
         lengths = np.outer(self.body.log_force(np.log(depths))[2], RATIOS)
         values = np.empty((2, depths.size, RATIOS.size + 1))
         for i, row in enumerate(lengths.tolist()):
@@ -69,7 +69,7 @@ class SimulatedCurve:
         """Coefficients of what is left."""
         if self.forces is None:
             return np.zeros((2, 2))
-        log_depths = np.log(tensed(self.body.depths))
+        log_depths = np.log(tensed_depths(self.body.depths))
         expected = np.exp(self.body.log_force(log_depths)[0])[:, None] * self.nodes[1]
         left, v = np.log(self.forces / expected), RATIOS / (1 + RATIOS)
         of_depth = chebvander(self._place(log_depths)[0], len(left) - 1)

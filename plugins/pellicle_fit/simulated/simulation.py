@@ -20,7 +20,7 @@ from pellicle.errors import ConfigError, ConvergenceError, ConvergenceWarning
 from pellicle.units import readable
 
 from .equivalent import EquivalentBody
-from .interpolated import RATIOS, SimulatedCurve, tensed
+from .interpolated import RATIOS, SimulatedCurve, tensed_depths
 from .solid import UnitKernel, quantities_of
 
 GRID_POINTS = 64
@@ -67,21 +67,25 @@ def simulated_curve(
     depths, halves, study = plan(indenter, solid, deepest, grid_points)
     is_layered = any(quantity.unit == "m" for _, quantity, _ in quantities_of(solid.kernel))
     boxes = 2 * (_MARGIN_OF_LAYERS if is_layered else _MARGIN) * halves
-    rows, fine, coarse = tensed(depths), [grid_points], [grid_points // 2] * tensed(depths).size
+    rows, fine, coarse = (
+        tensed_depths(depths),
+        [grid_points],
+        [grid_points // 2] * tensed_depths(depths).size,
+    )
     contacts = {
         "loading.depth": np.append(depths, rows),
-        "grid.size": np.concatenate([boxes, tensed(boxes)]),
+        "grid.size": np.concatenate([boxes, tensed_depths(boxes)]),
         "grid.points": np.array(fine * depths.size + coarse),
     }
-    first = solved(study, contacts, **options)
+    first = solve_contacts(study, contacts, **options)
     bare, bare_coarse = np.split(first["force"].values.ravel(), [depths.size])
     curve = SimulatedCurve(EquivalentBody(depths, bare))
     lengths, _, narrower = curve.nodes
     shares = first["contact_radius"].values.ravel()[: depths.size] / np.sqrt(halves.prod(axis=1))
     # Under a tension contacts are narrower, about as those of the body; not so on thin layers.
     narrower = np.ones_like(narrower) if is_layered else narrower
-    widths = 2 * _ROOM * tensed(shares[:, None] * halves)[:, None] * narrower[..., None]
-    sizes = np.minimum(widths, tensed(boxes)[:, None])
+    widths = 2 * _ROOM * tensed_depths(shares[:, None] * halves)[:, None] * narrower[..., None]
+    sizes = np.minimum(widths, tensed_depths(boxes)[:, None])
     contacts = {
         "loading.depth": np.append(np.repeat(rows, RATIOS.size), rows),
         f"kernel.{solid.tension}": np.append(lengths, lengths[:, _COARSE]) / 2,
@@ -89,10 +93,10 @@ def simulated_curve(
         "grid.points": np.array(fine * lengths.size + coarse),
     }
     under, coarse_under = np.split(
-        solved(study, contacts, **options)["force"].values.ravel(), [lengths.size]
+        solve_contacts(study, contacts, **options)["force"].values.ravel(), [lengths.size]
     )
     forces = under.reshape(lengths.shape)
-    changes = np.append(bare_coarse / tensed(bare), coarse_under / forces[:, _COARSE]) - 1
+    changes = np.append(bare_coarse / tensed_depths(bare), coarse_under / forces[:, _COARSE]) - 1
     return SimulatedCurve(curve.body, forces, float(np.max(np.abs(changes))), solid.is_half_space)
 
 
@@ -121,7 +125,7 @@ def plan(
     return depths, np.array([half_widths(indenter, depth) for depth in depths]), study
 
 
-def solved(
+def solve_contacts(
     study: Mapping[str, Any],
     contacts: Mapping[str, Array],
     *,

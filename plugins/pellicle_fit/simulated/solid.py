@@ -11,8 +11,8 @@ from pydantic.fields import FieldInfo
 
 from pellicle import registry
 from pellicle.components import Kernel
-from pellicle.errors import ConfigError, problems_within, shown
-from pellicle.schema import get, replaced, walk
+from pellicle.errors import ConfigError, excerpt, problems_within
+from pellicle.schema import get, replace_at, walk
 from pellicle.units import Quantity, quantity_of
 
 
@@ -55,12 +55,12 @@ def solid(spec: str | Mapping[str, Any], poissons_ratio: float | None = None) ->
         path, info = _field(table, "poissons_ratio", or_none=True)
         ratio = get(table, path)
         if ratio is None and poissons_ratio is not None and info and info.is_required():
-            ratio, table = poissons_ratio, replaced(table, path, poissons_ratio)
-        kernel = registry().make(Kernel, replaced(replaced(table, modulus, 1.0), tension, 0.0))
+            ratio, table = poissons_ratio, replace_at(table, path, poissons_ratio)
+        kernel = registry().make(Kernel, replace_at(replace_at(table, modulus, 1.0), tension, 0.0))
         for field, quantity, value in quantities_of(kernel):
             if value and field not in (modulus, tension) and quantity.powers()[0]:
                 raise ConfigError(
-                    f"{shown(value)} {quantity.unit} scales with the modulus, which is not known "
+                    f"{excerpt(value)} {quantity.unit} scales with the modulus, which is not known "
                     "yet; a fit allows only lengths and plain numbers, so leave it out",
                     field,
                 )

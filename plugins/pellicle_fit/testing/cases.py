@@ -87,7 +87,7 @@ class Case(NamedTuple):
         return self.curve.force if is_force else self.curve.position
 
     @property
-    def allowed(self) -> float:
+    def force_tolerance(self) -> float:
         """Difference of forces that is none [N]."""
         known = Explanation(Solid(reduced_modulus=self.modulus, contact_point=0.0), (self.effect,))
         return max(_ROUNDING, 3 * known.accuracy(self.curve)) * self.curve.largest
@@ -102,6 +102,6 @@ def curves() -> Iterator[tuple[str, Curve]]:
         force = Contact.on_half_space(body, _MODULUS, 2 * float(np.ptp(depth))).force(depth)
         way = np.abs(np.diff(depth + force / STIFFNESS, prepend=depth[0]))
         curve = Curve(depth, force, body, np.cumsum(way) / _SPEED, stiffness=STIFFNESS)
-        for array in (depth, force, curve.clock, curve.base, curve.smoothed, curve.velocity):
+        for array in (depth, force, curve.clock, curve.base, curve.smooth_force, curve.velocity):
             array.flags.writeable = False
         yield f"{words} of {tip}", curve

@@ -157,7 +157,7 @@ def without_its_cause_it_is_nothing(case: Case) -> str:
                 off = quantity(off)
                 nothing = case._replace(effect=case.effect.model_copy(update={name: off}))
                 far = np.max(np.abs(nothing.force(nothing.effect) - case.force()))
-                far -= max(case.allowed, _LIMIT * case.curve.largest if off else 0.0)
+                far -= max(case.force_tolerance, _LIMIT * case.curve.largest if off else 0.0)
                 least, words = min((least, words), (far, f"{name} = {off:g}"))
     if not words or least <= 0:
         return ""
@@ -173,7 +173,7 @@ def units_are_right(case: Case) -> str:
     for words, factors in _SCALES.items():
         scaled = case.scaled(*factors)
         far = np.max(np.abs(scaled.force(scaled.effect) - factors[1] * case.force(case.effect)))
-        if far > scaled.allowed:
+        if far > scaled.force_tolerance:
             return (
                 f"with {words} {max(factors):g} times as large the force is off by {far:.2g} N; "
                 "is the unit of a quantity wrong?"

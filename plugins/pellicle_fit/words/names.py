@@ -52,7 +52,7 @@ def in_words(effects: Sequence[Effect]) -> str:
     return " with ".join(names) or "an elastic half-space"
 
 
-def listed(names: Sequence[str], last: str = "and", most: int = 20) -> str:
+def join_names(names: Sequence[str], last: str = "and", most: int = 20) -> str:
     """Return names with commas and a word before the last; of many, how many more there are."""
     if len(names) > most + 1:
         names = [*names[:most], f"{len(names) - most} more"]
@@ -64,7 +64,7 @@ def unit_of(values: Sequence[float], unit: str, *, si: bool = False) -> Scale:
     return Column("", values, unit).unit_and_digits(si=si)[0]
 
 
-def unit_of_one(estimate: Estimate, *, si: bool = False) -> Scale:
+def scale_of(estimate: Estimate, *, si: bool = False) -> Scale:
     """Return the unit for the value and the ends of an estimate, as `unit_of` does."""
     ends = [end for end in (estimate.low, estimate.high) if end is not None]
     # The value of an interval that is open to one side is not shown.
@@ -97,7 +97,7 @@ def value_and_ends(estimate: Estimate, unit: Scale, digits: int) -> tuple[str, s
     return told, interval(estimate, unit, digits)
 
 
-def quoted(estimate: Estimate, unit: Scale, digits: int, shown_unit: str = "") -> str:
+def quote_estimate(estimate: Estimate, unit: Scale, digits: int, shown_unit: str = "") -> str:
     """Return an estimate with its interval, ``5.0 mN/m (4.8 to 5.2)``; of a wide one the ends."""
     value, ends = value_and_ends(estimate, unit, digits)
     if value:
@@ -108,5 +108,5 @@ def quoted(estimate: Estimate, unit: Scale, digits: int, shown_unit: str = "") -
 
 def in_figures(estimate: Estimate, *, si: bool = False) -> str:
     """Return an estimate with its interval and its unit."""
-    unit = unit_of_one(estimate, si=si)
-    return quoted(estimate, unit, FEW, f" {unit.unit}".rstrip())
+    unit = scale_of(estimate, si=si)
+    return quote_estimate(estimate, unit, FEW, f" {unit.unit}".rstrip())

@@ -10,7 +10,7 @@ from pellicle_fit.estimation.intervals import CONFIDENCE
 from pellicle_fit.population.row import Row
 from pellicle_fit.selection.neighbour import RULED_OUT
 
-from .names import listed
+from .names import join_names
 from .story import NOT_WEIGHED
 
 _NAMES = 10
@@ -36,7 +36,9 @@ def sentences_of_population(rows: Sequence[Row]) -> list[str]:
         counts += f"; verdicts: {of}"
     sentences = [counts]
     if far := [row.name for row in rows if row.outlier]:
-        sentences.append(f"far from the median modulus, and counted: {listed(far, most=_NAMES)}")
+        sentences.append(
+            f"far from the median modulus, and counted: {join_names(far, most=_NAMES)}"
+        )
     if spared:
         sentences.append(
             f"in {spared} of them what curves beside them rule out by {RULED_OUT:.0f} in AIC was "
@@ -57,7 +59,11 @@ def advice_of_population(rows: Sequence[Row]) -> list[str]:
     lines, fitted = [], sum(row.is_fitted for row in rows)
     for steps in sorted(kinds.values(), key=len, reverse=True)[:_STEPS]:
         (first, step), *others = steps.items()
-        of = f"all {fitted} curves" if len(steps) == fitted > 1 else listed([*steps], most=_NAMES)
+        of = (
+            f"all {fitted} curves"
+            if len(steps) == fitted > 1
+            else join_names([*steps], most=_NAMES)
+        )
         example = "" if all(entry["why"] == step["why"] for _, entry in others) else f"{first}: "
         lines.append(f"{of}: {step['do']} ({example}{step['why']})")
     return lines

@@ -21,7 +21,7 @@ from pellicle_fit.record import Record
 from pellicle_fit.selection.recipe import Answer
 from pellicle_fit.selection.verdict import Verdict
 
-from .names import in_figures, in_words, listed, words, words_of, words_of_types
+from .names import in_figures, in_words, join_names, words, words_of, words_of_types
 
 _WIDTH = 100
 _WRAPPED: dict[str, Any] = {"subsequent_indent": "    ", "break_on_hyphens": False}
@@ -34,7 +34,7 @@ NOT_WEIGHED = (
 )
 
 
-def told(fit: Record, *, si: bool = False) -> list[str]:
+def story_lines(fit: Record, *, si: bool = False) -> list[str]:
     """Return the lines of its story for a terminal; a long one goes on, indented, after a ";"."""
     lines = list[str]()
     for line in story(fit, si=si):
@@ -83,7 +83,7 @@ def calibration(uncertainty: Mapping[Any, float]) -> str:
 
 def shares(uncertainty: Mapping[Any, float]) -> str:
     """Return an uncertainty in words."""
-    return listed([f"{words(name)} to {100 * x:.3g} %" for name, x in uncertainty.items()])
+    return join_names([f"{words(name)} to {100 * x:.3g} %" for name, x in uncertainty.items()])
 
 
 def verdict_in_words(answer: Answer) -> str:
@@ -134,7 +134,7 @@ def _reason(answer: Answer) -> str:
     question = answer.question
     if answer.verdict is Verdict.UNDESCRIBED:
         flaws = {flaw for check in answer.judgements if not check.describes for flaw in check.flaws}
-        untried = listed([words_of_types(question, types) for types in answer.untried])
+        untried = join_names([words_of_types(question, types) for types in answer.untried])
         why = next(flaw.value for flaw in Flaw if flaw in flaws)
         return f"{why}; {untried} could not be tried" if untried else why
     fits = {fit.types: fit for fit in answer.explanations}
@@ -148,7 +148,7 @@ def _reason(answer: Answer) -> str:
 def _named(fits: Sequence[Candidate]) -> str:
     """Return explanations in words, but for those that only add to another of them."""
     simplest = [fit for fit in fits if not any(rival.types < fit.types for rival in fits)]
-    return listed([*map(words_of, simplest)], "or", _RIVALS)
+    return join_names([*map(words_of, simplest)], "or", _RIVALS)
 
 
 def agreement(answer: Answer, names: Sequence[str]) -> str:
@@ -168,7 +168,7 @@ def agreement(answer: Answer, names: Sequence[str]) -> str:
 def _remarks_of_sines(answer: Answer) -> Iterator[str]:
     """Yield a warning of the sine that is explained worst, and of those that are not small."""
     selected = answer.selected
-    for number, (known, curve) in enumerate(zip(selected.known, selected.whole, strict=True)):
+    for number, (known, curve) in enumerate(zip(selected.known, selected.all_rows, strict=True)):
         if far := misfit(selected, number):
             size = f"{100 * abs(far.off):.2g} % off that of {words_of(selected)}"
             yield f"the stiffness of the sine of {far.frequency:.4g} Hz is {size}"
@@ -182,7 +182,7 @@ def _remarks_of_sines(answer: Answer) -> Iterator[str]:
 
 def remarks(answer: Answer) -> Iterator[str]:
     """Yield warnings of what does without the modulus, and notes of what was added or left out."""
-    if any(map(is_straight, answer.selected.whole)):
+    if any(map(is_straight, answer.selected.all_rows)):
         yield "a straight line describes the forces as well: perhaps there is no contact"
     if fit := answer.elsewhere:
         known = (fit.parameters[name] for name in (CONTACT_POINT, MODULUS))
@@ -202,5 +202,5 @@ def remarks(answer: Answer) -> Iterator[str]:
         if not (question.of_target and question.of_target <= types):
             reasons.setdefault(reason, []).append(words_of_types(question, types))
     if reasons:
-        parts = (f"{listed(names)} ({reason})" for reason, names in reasons.items())
+        parts = (f"{join_names(names)} ({reason})" for reason, names in reasons.items())
         yield Note(f"not compared: {'; '.join(parts)}")

@@ -19,12 +19,12 @@ from pellicle.errors import ConfigError
 from pellicle.units import Length
 
 
-def one_of_it(value: object) -> object:
+def length_of(value: object) -> object:
     """Return ``"1 um"`` for ``"um"``; any other value unchanged."""
     return f"1 {value}" if isinstance(value, str) and value.strip().isalpha() else value
 
 
-HeightUnit = Annotated[Length, BeforeValidator(one_of_it, json_schema_input_type=float | str)]
+HeightUnit = Annotated[Length, BeforeValidator(length_of, json_schema_input_type=float | str)]
 """A length [m] that heights without a unit count: ``"um"``, ``"1 um"``, or a number of metres."""
 
 

@@ -15,7 +15,7 @@ from pydantic import AfterValidator, Field, model_validator
 from pellicle.arrays import Array
 from pellicle.components import shape_of_run
 from pellicle.errors import ConfigError
-from pellicle.schema import InputPath, fault_of_packing, measured, read_mat, unpacked_size
+from pellicle.schema import InputPath, fault_of_packing, hdf5_numbers, read_mat, unpacked_size
 
 from .contents import first
 from .file_checks import datasets, require_file, require_memory
@@ -106,7 +106,7 @@ def array_in(path: Path, dataset: str | None) -> Any:
                     raise ConfigError(f"{path} {reason}", "dataset")
                 if (expected := shape_of_run()) is not None:
                     require_shape(array.shape, expected, str(path), "path")
-            return measured(array) if kind == "hdf5" else array[...]
+            return hdf5_numbers(array) if kind == "hdf5" else array[...]
     except ConfigError:
         raise
     # Readers raise anything for damaged files.

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from pellicle.arrays import Array
 from pellicle.components import ContactRadius, ForceCurve, Indenter, LayerForceCurve
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, excerpt
 from pellicle.units import Length, Quantity
 from pellicle_axisymmetric import (
     BodyOfRevolution,
@@ -23,7 +23,7 @@ from pellicle_axisymmetric import (
     paraboloid,
     punch_radius,
     smooth_profile,
-    stretched,
+    stretch_curve,
 )
 
 _TINY = 1e-12
@@ -48,7 +48,7 @@ class Sphere(BodyOfRevolution):
     def _check(self) -> Self:
         if self.flat_radius is not None and not self.flat_radius < self.radius:
             raise ConfigError(
-                f"has to be less than the radius, {shown(self.radius)} m", "flat_radius"
+                f"has to be less than the radius, {excerpt(self.radius)} m", "flat_radius"
             )
         return self
 
@@ -143,7 +143,7 @@ class Paraboloid(BodyOfRevolution):
         height = flat * (flat / self.radius)
         if height <= _TINY * depth.max(initial=0.0):
             return paraboloid(self.radius, depth, length)
-        return stretched(_WORN, flat, height, depth, length)
+        return stretch_curve(_WORN, flat, height, depth, length)
 
     def _layer_curves(self) -> Profile | None:
         smooth = self.flat_radius is None
@@ -208,7 +208,7 @@ class Cone(BodyOfRevolution):
         height = self._blunt / tan(self.half_angle)
         if height <= _TINY * depth.max(initial=0.0):
             return cone(self.half_angle, depth, length)
-        return stretched(_BLUNT, self._blunt, height, depth, length)
+        return stretch_curve(_BLUNT, self._blunt, height, depth, length)
 
     def _layer_curves(self) -> Profile | None:
         return cone_profile(self.half_angle) if self.tip_radius is None else None

@@ -13,7 +13,7 @@ from pellicle.arrays import Array
 from pellicle.components import ForceCurve, Indenter
 from pellicle.errors import ConfigError
 from pellicle.units import Length, Quantity
-from pellicle_axisymmetric import Interpolant, cone, spread, stretched_spline, touching
+from pellicle_axisymmetric import Interpolant, cone, contact_part, fill_curve, stretched_spline
 
 SCALE = 0.03
 LENGTHS: Array = SCALE * np.expm1(np.arange(0.0, 15.1, 0.5))
@@ -82,13 +82,13 @@ class Pyramid(Indenter):
         """
         if self.tip_radius is not None:
             raise ConfigError("a rounded pyramid has no known force curve", "indenter")
-        touches, d = touching(depth)
+        touches, d = contact_part(depth)
         by_length = self.slope / d
         x = length * by_length
         ratio, rate = _ratio(self.sides)(x)
         factor, of_cone = np.exp(ratio), cone(atan(1 / self.slope), d, length)
         force = of_cone.force * factor
-        return spread(
+        return fill_curve(
             touches,
             force,
             of_cone.by_depth * factor - rate * x * force / d,

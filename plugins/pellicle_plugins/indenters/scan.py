@@ -40,14 +40,14 @@ class Channel(NamedTuple):
     is_height: bool
     is_areal: bool
     edges: Sequence[Edge]
-    """Two edge lengths, as `known` returns them."""
+    """Two edge lengths, as `known_edges` returns them."""
     read: Callable[[], Array]
     """Return the values along x, then y; NaN where a point is missing."""
     missing: str = "missing"
     """Words on the missing points."""
 
 
-def known(edges: Sequence[Edge]) -> Sequence[Edge]:
+def known_edges(edges: Sequence[Edge]) -> Sequence[Edge]:
     """Return the edge lengths of a surface; none where a program that did not know them wrote 0."""
     return edges if len(edges) == 2 and all(0 < edge < inf for edge, _ in edges) else ()
 
@@ -59,7 +59,7 @@ def metres(unit: str) -> float | None:
     return None
 
 
-def chosen(channels: Sequence[Channel], name: str | None, path: Path) -> Channel:
+def channel_of(channels: Sequence[Channel], name: str | None, path: Path) -> Channel:
     """Return the channel of heights with a name; the first of them if it is None."""
     channels = sorted(channels, key=lambda channel: not channel.is_height)
     names = dict.fromkeys(repr(channel.name) for channel in channels if channel.is_height)

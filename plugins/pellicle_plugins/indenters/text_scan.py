@@ -11,7 +11,7 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.errors import ConfigError
 
-from .scan import Channel, Edge, known, metres
+from .scan import Channel, Edge, known_edges, metres
 from .text_table import TextTable
 
 _QUANTITY = re.compile(r"([-+]?\d*\.?\d+(?:[eE][-+]?\d+)?)\s*(.*)")
@@ -64,7 +64,7 @@ def text_channel(name: str, table: TextTable, path: Path) -> Channel:
         units.append((edge and edge[1]) or _word(entries, f"unit {axis}") or units[-1])
         if edge:
             stated.append((edge[0], units[-1]))
-    edges = known(stated)
+    edges = known_edges(stated)
     is_areal = min(heights.shape) > 2 or (len(heights) > 1 and bool(edges))
     if len(heights) == 3 and not (edges and _is_matrix(heights, edges)):
         heights, coordinates = _on_grid(heights, path)

@@ -18,7 +18,7 @@ from pellicle.errors import ConfigError
 
 from .contents import contents, unit_of_image
 from .file_checks import HDF5, datasets, require_file, require_memory, require_unpacked
-from .scan import Channel, Scan, chosen, edge_lengths, height_scale, known
+from .scan import Channel, Scan, channel_of, edge_lengths, height_scale, known_edges
 from .text_scan import text_channel
 from .text_table import FORMAT_MARKS, read_tables, text_in
 
@@ -61,7 +61,7 @@ def _read(
             warnings.simplefilter("ignore")
             warnings.simplefilter("error", np.exceptions.ComplexWarning)
             digest = hashlib.file_digest(file, "sha256").hexdigest()
-            channel = chosen(_channels(file, path), name, path)
+            channel = channel_of(_channels(file, path), name, path)
             scale = height_scale(channel, unit, path)
             edges = edge_lengths(channel, size, scale, path)
             heights = channel.read() * scale
@@ -127,7 +127,7 @@ def _library_channel(channel: Any, reader: Any, path: Path) -> Channel:
         # To the library A is the ångström, to Gwyddion the ampere.
         if unit_of_image(reader._metadata, f"/{channel.tags['index']}/data") == "A":
             is_height, unit = False, "A"
-    edges = known([(float(edge), None) for edge in channel.physical_sizes or ()])
+    edges = known_edges([(float(edge), None) for edge in channel.physical_sizes or ()])
     return Channel(channel.name, unit, is_height, channel.dim == 2, edges, read, missing)
 
 

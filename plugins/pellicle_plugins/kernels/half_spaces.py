@@ -12,7 +12,7 @@ from pellicle.components import Isotropic
 
 from .elastic_constants import ElasticModulus
 from .struve import struve_minus_bessel, struve_minus_bessel_primitive
-from .tensions import Stretched
+from .tensions import SkinTensions
 
 
 class HalfSpace(ElasticModulus, Isotropic):
@@ -36,7 +36,7 @@ class HalfSpace(ElasticModulus, Isotropic):
         return r / (np.pi * self.contact_modulus)
 
 
-class TensedMembrane(Stretched, ElasticModulus, Isotropic):
+class TensedMembrane(SkinTensions, ElasticModulus, Isotropic):
     """Elastic half-space under a skin of constant tension (Hajji 1978).
 
     On a periodic boundary the tension along one direction may differ from that across it.
@@ -48,7 +48,7 @@ class TensedMembrane(Stretched, ElasticModulus, Isotropic):
     @property
     def is_isotropic(self) -> bool:
         """Whether the tension is the same in all directions."""
-        return self.is_tensed_alike
+        return self.has_one_tension
 
     @property
     def elastocapillary_length(self) -> float:

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field
 
 from pellicle.arrays import Array
 from pellicle.components import Isotropic
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, excerpt
 
 from .elastic_constants import ElasticConstants
 from .elastic_layer import Layer
@@ -28,7 +28,7 @@ def _substrate(value: object) -> object:
     if value == "rigid" or isinstance(value, ElasticConstants):
         return value
     raise ConfigError(
-        f'{shown(value)} is not allowed; give "rigid", or a table of youngs_modulus and '
+        f'{excerpt(value)} is not allowed; give "rigid", or a table of youngs_modulus and '
         "poissons_ratio for a half-space"
     )
 

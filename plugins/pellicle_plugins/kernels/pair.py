@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from pellicle.arrays import Array
-from pellicle.components import Branch, FromRegistry, Kernel, OfWave, relax_alike
+from pellicle.components import Branch, FromRegistry, Kernel, OfWave, have_equal_branches
 from pellicle.surface import mean_compliance
 
 
@@ -84,7 +84,7 @@ class Pair(Kernel):
     @model_validator(mode="after")
     def _check_relaxation(self) -> Self:
         bodies = self.first, self.second
-        if not relax_alike(self.first.branches(), self.second.branches()):
+        if not have_equal_branches(self.first.branches(), self.second.branches()):
             raise ValueError(
                 "the bodies relax differently, and then their sum has no branches of its own; give "
                 "both the same fractions and times, or none"

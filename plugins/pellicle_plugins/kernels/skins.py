@@ -12,7 +12,7 @@ from pellicle.components import FromRegistry, Isotropic, Kernel, KernelOf
 from pellicle.units import BendingStiffness, Tension
 
 from .elastic_constants import ElasticConstants, ElasticModulus
-from .tensions import TENSION, Stretched, Tensions
+from .tensions import TENSION, SkinTensions, Tensions
 
 _BENDING: Final[Any] = {
     "title": "bending stiffness",
@@ -88,7 +88,7 @@ class GurtinMurdoch(Skin, ElasticConstants, Isotropic):
         return 1 / (self.contact_modulus * q / 2 * hindered + self.skin_stiffness(q))
 
 
-class Coated(Stretched, KernelOf):
+class Coated(SkinTensions, KernelOf):
     """Skin with tension and bending stiffness on any other kernel.
 
     The stiffnesses of substrate and skin add at each wave. This is exact if the skin transmits
@@ -116,12 +116,12 @@ class Coated(Stretched, KernelOf):
     @property
     def is_isotropic(self) -> bool:
         """Whether the substrate is, and the tension is the same in all directions."""
-        return self.is_tensed_alike and self.substrate.is_isotropic
+        return self.has_one_tension and self.substrate.is_isotropic
 
     def symbol(self, qx: Array, qy: Array) -> Array:
         """Return G(q) = 1/(1/G_s + qᵀTq + B q⁴) [m/Pa], with G_s of the substrate."""
         substrate, q = self.substrate.symbol(qx, qy), np.hypot(qx, qy)
-        if self.is_tensed_alike:
+        if self.has_one_tension:
             skin = (self.one_tension + self.bending * q**2) * q**2
         else:
             skin = self.tension_stiffness(qx, qy) + self.bending * q**4

@@ -11,7 +11,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
 
 from pellicle.arrays import Array
-from pellicle.errors import ConfigError, shown
+from pellicle.errors import ConfigError, excerpt
 from pellicle.schema import Model
 from pellicle.units import Quantity
 
@@ -24,7 +24,7 @@ class OneOrTwo(Quantity):
         if not isinstance(value, Sequence) or isinstance(value, str):
             return super().__call__(value)
         if len(value) != 2:
-            raise ValueError(f"{shown(value)} is not allowed; give one value, or a list of two")
+            raise ValueError(f"{excerpt(value)} is not allowed; give one value, or a list of two")
         first, second = map(super().__call__, value)
         return first if first == second else (first, second)
 
@@ -47,7 +47,7 @@ TENSION: Final[Any] = {
 }
 
 
-class Stretched(Model):
+class SkinTensions(Model):
     """A skin under tension, which may be tensed more one way: k = qᵀTq."""
 
     tension: Tensions = Field(**TENSION)
@@ -58,7 +58,7 @@ class Stretched(Model):
     )
 
     @property
-    def is_tensed_alike(self) -> bool:
+    def has_one_tension(self) -> bool:
         """Whether the tension is the same in all directions."""
         return not isinstance(self.tension, tuple)
 
@@ -82,7 +82,7 @@ class Stretched(Model):
 
     @model_validator(mode="after")
     def _check_angle(self) -> Self:
-        if self.angle is not None and self.is_tensed_alike:
+        if self.angle is not None and self.has_one_tension:
             raise ConfigError(
                 "is given, and the tension is the same in all directions; leave it out, or give "
                 "two tensions",

@@ -15,7 +15,7 @@ from pellicle.units import Quantity, Time
 
 from .power_law import PronySeries, power_law_series
 from .skins import Skin
-from .tensions import Stretched
+from .tensions import SkinTensions
 
 # Fractions given in decimals may sum to 1 plus rounding.
 _ROUNDING: Final = 1e-12
@@ -151,7 +151,7 @@ class Viscoelastic(KernelOf):
     @field_validator("solid")
     @classmethod
     def _check_solid(cls, solid: Kernel) -> Kernel:
-        if isinstance(solid, (Skin, Stretched)):
+        if isinstance(solid, (Skin, SkinTensions)):
             raise ValueError(
                 f"{solid.type_name} has a skin, which would relax with the solid; give the solid "
                 'without it, and put the skin on top: type = "coated", with this kernel as its '

@@ -12,7 +12,7 @@ from pellicle.arrays import Array
 from pellicle.components import Load
 from pellicle.schema import InputPath
 from pellicle.units import Quantity
-from pellicle_plugins.indenters.from_heights import FromArray, one_of_it
+from pellicle_plugins.indenters.from_heights import FromArray, length_of
 from pellicle_plugins.indenters.heights import array_in, checked_array, one_source, require_shape
 
 _Unit = Annotated[float, Quantity("Pa", above=0)]
@@ -34,7 +34,7 @@ class Map(FromArray, Load):
         description="file with a 2-D array [along x, along y] of tractions, positive into the "
         "solid: .npy, text (.txt, .csv, .dat), .h5 or .mat",
     )
-    unit: Annotated[_Unit, BeforeValidator(one_of_it, json_schema_input_type=float | str)] = Field(
+    unit: Annotated[_Unit, BeforeValidator(length_of, json_schema_input_type=float | str)] = Field(
         description="traction that a 1 in the data stands for [Pa]: 'kPa'"
     )
     dataset: str | None = Field(None, description="name of the array in a file that holds several")

@@ -80,7 +80,7 @@ class AdhesiveCurve(TableFigure):
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield the curves, and the tables of their points and of their ends."""
-        drawn = [self._drawn(name, run) for name, _, run in self.opened(runs)]
+        drawn = [self._drawn(name, run) for name, _, run in self.open_runs(runs)]
         rows = [
             (d.name.key, *row)
             for d in drawn

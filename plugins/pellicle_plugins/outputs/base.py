@@ -49,7 +49,7 @@ Reference = Annotated[
 ]
 
 
-class Chosen(dict[str, Any]):
+class Selection(dict[str, Any]):
     """Values of axes by name; of equal ones, as of equal outputs, the hashes are equal."""
 
     def __hash__(self) -> int:  # type: ignore[override]
@@ -72,8 +72,8 @@ class TableFigure(Output):
         (),
         description="axis of the study, or step, or several: each value has its own curve or panel",
     )
-    where: Annotated[dict[str, Any], AfterValidator(Chosen)] = Field(
-        default_factory=Chosen,
+    where: Annotated[dict[str, Any], AfterValidator(Selection)] = Field(
+        default_factory=Selection,
         description="values of other axes of the study for which it is drawn, such as "
         '{ "kernel.tension" = "10 mN/m" }',
     )
@@ -98,7 +98,7 @@ class TableFigure(Output):
             return ()
         return write_charts(self.charts(runs), stem, self.formats, self.style)
 
-    def shown(self, runs: Runs) -> Runs:
+    def selected_runs(self, runs: Runs) -> Runs:
         """Return the runs that `where` leaves."""
         table = runs.table
         for name, entry in self.where.items():
@@ -116,12 +116,12 @@ class TableFigure(Output):
             table = table.isel({axis.dims[0]: int(np.argmax(same))})
         return StoredRuns(table, runs.open, runs.configuration)
 
-    def picked(self, runs: Runs) -> Iterator[tuple[Label, Dataset]]:
+    def points_of_runs(self, runs: Runs) -> Iterator[tuple[Label, Dataset]]:
         """Yield the name of each curve or panel and the point of the table that it shows.
 
         Other axes are at their first value, steps at the last of the table.
         """
-        table = self.shown(runs).table
+        table = self.selected_runs(runs).table
         require_axes(table.sizes, self.by, "by")
         first = {str(dim): -1 if dim == "step" else 0 for dim in table.sizes}
         for index in along(table, self.by):
@@ -132,9 +132,9 @@ class TableFigure(Output):
         """Return whether the curves belong to numbers to compare."""
         return len(self.by) == 1 and is_ordered(runs.table, self.by[0])
 
-    def opened(self, runs: Runs) -> Iterator[tuple[Label, Dataset, Dataset]]:
+    def open_runs(self, runs: Runs) -> Iterator[tuple[Label, Dataset, Dataset]]:
         """Yield the name, the point of the table and the run of each, if there is its file."""
-        for name, point in self.picked(runs):
+        for name, point in self.points_of_runs(runs):
             try:
                 run = runs.open(str(point["run"].item()))
             except StorageError:
@@ -143,7 +143,7 @@ class TableFigure(Output):
 
     def steps(self, runs: Runs) -> Iterator[tuple[Label, Dataset]]:
         """Yield the name of each curve or panel and the last load step of its run, if finished."""
-        for name, point, run in self.opened(runs):
+        for name, point, run in self.open_runs(runs):
             number = int(point["step"].item())
             if "step" not in self.by:
                 number = min(number, Result(run).planned_steps)

@@ -18,7 +18,7 @@ from pellicle.errors import ConfigError
 from pellicle.results import has_path, is_log_spaced, is_ordered
 from pellicle.schema import Model, names_in
 from pellicle.show import in_words
-from pellicle.units import printed, readable
+from pellicle.units import format_unit, readable
 from pellicle.variables import FIELDS, WALL_PRESSURE
 from pellicle_plugins.validation.reference import exact
 
@@ -42,7 +42,7 @@ MOST_PANELS = 12
 _NONE = np.empty(0)
 
 
-class Published(Model):
+class PublishedCurve(Model):
     """Published points or a line, to compare with."""
 
     label: str = Field(description="name in the legend")
@@ -111,7 +111,7 @@ class Curves(TableFigure):
         description="continue each curve to x = 0 by a power law of fitted exponent: x is the "
         "cell size of nested grids, such as grid.size.0 / grid.points",
     )
-    published: tuple[Published, ...] = Field(
+    published: tuple[PublishedCurve, ...] = Field(
         (), description="published numbers: label, x, y, style"
     )
 
@@ -166,7 +166,7 @@ class Curves(TableFigure):
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield the curves."""
-        runs = self.shown(runs)
+        runs = self.selected_runs(runs)
         table = runs.table
         require_axes(table.sizes, self.by, "by")
         require_axes(table.sizes, [self.over] if self.over else [], "over")
@@ -218,7 +218,7 @@ class Curves(TableFigure):
         is_common, names = len(set(units)) == 1, list(self.series)
         if not names:
             for text, unit in zip(self.y, units, strict=True):
-                head = "" if is_common or unit == "1" else f" [{printed(unit)}]"
+                head = "" if is_common or unit == "1" else f" [{format_unit(unit)}]"
                 names.append(f"{in_words(text, table)}{head}")
         if len(ys) == 1 or self.y_label is not None:
             return axis_of(self.y[0], self.y_label, table), names

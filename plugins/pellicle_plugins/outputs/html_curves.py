@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from pellicle import registry
 from pellicle.components import Chart, Fields, Output, Runs, Table
 from pellicle.results import Result, column_of, has_load, label_of_step
-from pellicle.show import SIZE, Drawn, Picture, figure_of, marks_of, svg
+from pellicle.show import SIZE, Picture, PlacedSeries, figure_of, marks_of, svg
 
 from .figures import figures_of, figures_of_study
 from .step_figures import profile
@@ -95,7 +95,7 @@ def picture(
 ) -> Picture:
     """Return a picture, with marks at the load steps ``marked``."""
     marks: list[list[tuple[float, float]]] = []
-    drawn: list[Drawn] = []
+    drawn: list[PlacedSeries] = []
     # The page has a title, and a title may be longer than a figure is wide.
     fill, size = figure_of(shown, titled=False)
 

@@ -35,7 +35,7 @@ class Spectrum(TableFigure):
 
     def check(self, runs: Runs) -> None:
         """Refuse an axis or a label that the table does not have; four cells are no grid."""
-        list(self.picked(runs))
+        list(self.points_of_runs(runs))
 
     def charts(self, runs: Runs) -> Iterator[tuple[str, Shown]]:
         """Yield the spectra, and the numbers of all rings."""

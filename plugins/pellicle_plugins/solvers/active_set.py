@@ -24,9 +24,9 @@ from pellicle.contact import (
 from .adhesion import AdhesionSolver, refusal_of
 from .adhesive_response import with_zone
 from .bending.few_cells import MOST_CELLS, solved_on_few_cells
-from .bending.relaxation import relaxed
+from .bending.relaxation import relax_locally
 from .contact_cg import SIGN_CERTAINTY, STRICT_SIGN_CERTAINTY, InnerSolution, inner_solve
-from .nested_grids import prolonged
+from .nested_grids import coarse_start
 from .preconditioner import OnContact, Preconditioner
 from .scaling import ScaledSolver
 
@@ -145,7 +145,7 @@ class ActiveSet(ScaledSolver):
             state = _iterate(problem, preconditioner.on(start.contact), start.wall)
             if state.error <= _CLOSE * state.scale:
                 return state
-        from_coarse = prolonged(self, problem)
+        from_coarse = coarse_start(self, problem)
         pressure = first_guess(problem) if from_coarse is None else from_coarse.wall
         state = _iterate(problem, preconditioner.on(pressure > 0), pressure)
         return state if from_coarse is None else _without_pits(problem, state)
@@ -178,7 +178,7 @@ class ActiveSet(ScaledSolver):
         if state.bends and (after := _after_relaxation(problem, state, inner, history, goal)):
             return after
         on_contact = _changed(problem, state, inner, history)
-        trial = on_contact.transferred(inner.pressure, out=inner.pressure)
+        trial = on_contact.transfer(inner.pressure, out=inner.pressure)
         # This frees an array while the next displacement is computed.
         del inner
         return _iterate(problem, on_contact, trial, history, state)
@@ -262,9 +262,9 @@ def _after_relaxation(
     ends = history.returns > 0 or len(history.contacts) > _RELAXATION_STAGNATION
     if ends or not state.may_relax or not inner.pressure.any():
         return None
-    settled, forces = relaxed(problem, state.on_contact, inner, goal)
+    settled, forces = relax_locally(problem, state.on_contact, inner, goal)
     on_contact = state.on_contact.preconditioner.on(settled)
-    trial = on_contact.transferred(forces)
+    trial = on_contact.transfer(forces)
     if not trial.sum() > 0:
         return None
     after = _iterate(problem, on_contact, trial, history, state)
@@ -290,7 +290,7 @@ def _without_pits(problem: Problem, state: _Iterate) -> _Iterate:
     if not retained.any() or retained.sum() == on_contact.cells.size:
         return state
     on_contact = on_contact.preconditioner.on(retained)
-    return _iterate(problem, on_contact, on_contact.transferred(state.trial))
+    return _iterate(problem, on_contact, on_contact.transfer(state.trial))
 
 
 def _changed(

@@ -11,9 +11,9 @@ from pellicle.arrays import Array, Mask
 from pellicle.contact import Adhesive, Law, Problem, State, Stop, first_guess
 
 from .adhesive_round import Round
-from .anderson import Tried, extrapolated, is_convex
+from .anderson import RoundRecord, extrapolate_rounds, is_convex
 from .contact_cg import SIGN_CERTAINTY, inner_solve
-from .nested_grids import prolonged
+from .nested_grids import coarse_start
 from .preconditioner import OnContact, Preconditioner
 from .scaling import ScaledSolver
 
@@ -89,7 +89,7 @@ class AdhesionSolver(ScaledSolver):
         # Without the law, a depth closes cells only beyond the first touch.
         lowest = float(problem.profile.max())
         closes = problem.prescribed == "force" or problem.value > -lowest
-        coarse = prolonged(self, problem) if closes else None
+        coarse = coarse_start(self, problem) if closes else None
         if coarse:
             pressure, contact = coarse.pressure, coarse.wall > 0
         else:
@@ -107,17 +107,19 @@ class AdhesionSolver(ScaledSolver):
 
     def step(self, problem: Problem, state: Round) -> Round:
         """Return the next round."""
-        traction, missed, wall = extrapolated([*state.on_this_contact, state.tried], state.contact)
+        traction, missed, wall = extrapolate_rounds(
+            [*state.on_this_contact, state.record], state.contact
+        )
         following, contact = traction + missed, state.contact
         on_contact, changes = state.on_contact, _CHANGES
         # On springs a front has no stiffness, and a shift would leave the minimum of each cell.
         if state.front.length and not problem.operator.is_bed:
-            following, contact = state.front.moved(following, missed, state.gain)
+            following, contact = state.front.move_front(following, missed, state.gain)
         following = np.clip(following, -state.problem.law.strength(), 0.0)
         if not np.array_equal(contact, state.contact):
             on_contact, changes = on_contact.preconditioner.on(contact), _CHANGES - 1
         # The contact takes up what the change of the tractions lifts.
-        wall = on_contact.transferred(wall + traction - following)
+        wall = on_contact.transfer(wall + traction - following)
         wall[~contact] = 0.0
         after = self._closed(state.problem, on_contact, wall, following, state, changes)
         if state.gain > _LEAST_GAIN and _has_risen(state, after):
@@ -156,7 +158,7 @@ class AdhesionSolver(ScaledSolver):
         contact = on_contact.contact
         settled = False
         for _ in range(changes):
-            balanced = _with_wall_force(problem, contact, on_contact.transferred(wall), traction)
+            balanced = _with_wall_force(problem, contact, on_contact.transfer(wall), traction)
             if balanced is None:
                 nothing = np.zeros(problem.grid.shape)
                 released = on_contact.preconditioner.on(nothing > 0)
@@ -207,11 +209,11 @@ def _finished(
     state = Round(problem, on_contact, wall, traction, displacement, gap, depth, acting, settled)
     if before is None:
         return state
-    history: tuple[tuple[Mask, Tried], ...] = ()
+    history: tuple[tuple[Mask, RoundRecord], ...] = ()
     # A cell that just touches may leave the contact and return, where earlier rounds are of use.
     is_other = not np.array_equal(contact, before.contact)
-    if settled and before.settled and (is_other or is_convex(before.tried, state.tried, contact)):
-        history = (*before.history, (before.contact, before.tried))[-_MEMORY:]
+    if settled and before.settled and (is_other or is_convex(before.record, state.record, contact)):
+        history = (*before.history, (before.contact, before.record))[-_MEMORY:]
     return replace(
         state, history=history, progress=before.progress.after(state.residual, state.energy)
     )

@@ -10,7 +10,7 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 from pellicle.contact import Adhesive, Attraction, Progress
 
-from .anderson import Tried
+from .anderson import RoundRecord
 from .front import Front
 from .preconditioner import OnContact
 
@@ -33,7 +33,7 @@ class Round:
     """The traction of the law across `gap`."""
     settled: bool = True
     """Whether the wall pressure is ≥ 0 and no cell penetrates."""
-    history: tuple[tuple[Mask, Tried], ...] = ()
+    history: tuple[tuple[Mask, RoundRecord], ...] = ()
     """Contacts of earlier rounds, of which those on the same obey the same equations."""
     progress: Progress = field(default_factory=Progress)
     gain: float = 1.0
@@ -55,12 +55,12 @@ class Round:
         return Front(self.problem, self.contact, self.gap, self.attraction.traction)
 
     @property
-    def tried(self) -> Tried:
+    def record(self) -> RoundRecord:
         """The traction that was given, what it misses, and the wall pressure."""
-        return Tried(self.traction, self.missed, self.wall)
+        return RoundRecord(self.traction, self.missed, self.wall)
 
     @cached_property
-    def on_this_contact(self) -> tuple[Tried, ...]:
+    def on_this_contact(self) -> tuple[RoundRecord, ...]:
         """Earlier rounds on the same contact."""
         return tuple(one for contact, one in self.history if np.array_equal(contact, self.contact))
 

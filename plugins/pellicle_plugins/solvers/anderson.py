@@ -10,7 +10,7 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 
 
-class Tried(NamedTuple):
+class RoundRecord(NamedTuple):
     """Input and outcome of a round, each of the shape of the grid."""
 
     traction: Array
@@ -21,7 +21,7 @@ class Tried(NamedTuple):
     """Wall pressure [Pa]."""
 
 
-def extrapolated(rounds: Sequence[Tried], contact: Mask) -> Tried:
+def extrapolate_rounds(rounds: Sequence[RoundRecord], contact: Mask) -> RoundRecord:
     """Return the combination of rounds on one contact that misses least off it.
 
     Its coefficients sum to 1.  It is the last round itself if the step from there goes against the
@@ -33,7 +33,7 @@ def extrapolated(rounds: Sequence[Tried], contact: Mask) -> Tried:
     cells = np.flatnonzero(np.any([one.missed != 0 for one in rounds], axis=0) & ~contact)
     missed = np.array([one.missed.ravel()[cells] for one in rounds])
     weights, *_ = np.linalg.lstsq(np.diff(missed, axis=0).T, missed[-1], rcond=1e-10)
-    found = Tried(*(part.copy() for part in latest))
+    found = RoundRecord(*(part.copy() for part in latest))
     for weight, one, other in zip(weights, rounds, rounds[1:], strict=False):
         for part, before, after in zip(found, one, other, strict=True):
             part -= weight * (after - before)
@@ -42,7 +42,7 @@ def extrapolated(rounds: Sequence[Tried], contact: Mask) -> Tried:
     return found if falls else latest
 
 
-def is_convex(before: Tried, after: Tried, contact: Mask) -> bool:
+def is_convex(before: RoundRecord, after: RoundRecord, contact: Mask) -> bool:
     """Return whether the energy is convex between two rounds, so that a minimum may be sought.
 
     Where it is not, the state between two positions of the edge on the lattice is unstable, and an

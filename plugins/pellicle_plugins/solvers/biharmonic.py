@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pellicle.arrays import Mask
-from pellicle.contact import dilated
-from pellicle.surface import row_blocks, shared
+from pellicle.contact import dilate
+from pellicle.surface import in_threads, row_blocks
 
 from .window import window
 
@@ -47,7 +47,7 @@ class Sweeps:
     """
 
     def __init__(self, free: Field | Mask, stretch: tuple[float, float]) -> None:
-        weight = np.where(dilated(free < 1, cells=_NEAR), free, np.float32(0))
+        weight = np.where(dilate(free < 1, cells=_NEAR), free, np.float32(0))
         self._window = window(weight > 0, _REACH)
         self._weight = np.asarray(weight[self._window])
         self._stretch = stretch
@@ -75,7 +75,7 @@ def _subtract_biharmonic(
     weight: Field | None = None,
 ) -> None:
     """Subtract ``damping`` × ``weight`` × h⁴ Δ² of ``field`` from ``target``."""
-    wide = wrapped(field, 2)
+    wide = wrap_edges(field, 2)
 
     def subtract(rows: slice) -> None:
         change = _laplacian(_laplacian(wide[rows.start : rows.stop + 4], stretch), stretch)
@@ -84,7 +84,7 @@ def _subtract_biharmonic(
             change *= weight[rows]
         target[rows] -= change
 
-    shared(subtract, row_blocks(field.shape))
+    in_threads(subtract, row_blocks(field.shape))
 
 
 def _laplacian(wide: Field, stretch: tuple[float, float]) -> Field:
@@ -107,7 +107,7 @@ def _laplacian(wide: Field, stretch: tuple[float, float]) -> Field:
     return change
 
 
-def wrapped(field: Field, width: int = 1) -> Field:
+def wrap_edges(field: Field, width: int = 1) -> Field:
     """Return a periodic field padded by ``width`` cells at both ends of each axis."""
     wide = np.empty([n + 2 * width for n in field.shape], field.dtype)
     inner = wide[width:-width] if field.ndim == 1 else wide[width:-width, width:-width]
@@ -115,7 +115,7 @@ def wrapped(field: Field, width: int = 1) -> Field:
     def copy(rows: slice) -> None:
         inner[rows] = field[rows]
 
-    shared(copy, row_blocks(field.shape))
+    in_threads(copy, row_blocks(field.shape))
     for axis in range(field.ndim):
         lines = np.moveaxis(wide, axis, 0)
         lines[:width] = lines[-2 * width : -width]

@@ -43,7 +43,7 @@ class _Iterate:
     outside: float = 0.0
     """Penetration outside the contact [m]."""
 
-    def opened(self, problem: Problem, *, contact_changed: bool = False) -> _Iterate:
+    def with_gap(self, problem: Problem, *, contact_changed: bool = False) -> _Iterate:
         """Return the iterate with the gap of its displacement, and the errors of that gap."""
         gap, inner_gap, contact = self.gap, self.inner_gap, self.contact
         np.subtract(self.displacement, self.profile, out=gap)
@@ -96,7 +96,7 @@ class ConjugateGradient(ScaledSolver):
             inner_gap=np.empty_like(pressure),
             scratch=np.empty_like(pressure),
         )
-        return first.opened(problem, contact_changed=True)
+        return first.with_gap(problem, contact_changed=True)
 
     def residual(self, problem: Problem, state: _Iterate) -> float:
         """Return max(|gap| in contact, penetration outside) over the height range in contact."""
@@ -138,15 +138,15 @@ class ConjugateGradient(ScaledSolver):
         if clipped or added:
             np.greater(pressure, 0, out=state.contact)
             displacement = problem.operator(pressure)
-            return replace(state, displacement=displacement).opened(problem, contact_changed=True)
+            return replace(state, displacement=displacement).with_gap(problem, contact_changed=True)
         change *= length
         displacement = state.displacement
         displacement -= change
         displacement *= factor
-        state = state.opened(problem)
+        state = state.with_gap(problem)
         if self.residual(problem, state) <= self.tolerance:
             # The recurrence accumulates round-off, so the operator is applied before the end.
-            state = replace(state, displacement=problem.operator(pressure)).opened(problem)
+            state = replace(state, displacement=problem.operator(pressure)).with_gap(problem)
         return state
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pellicle.arrays import Array, Cells
 from pellicle.contact import Problem, dot
-from pellicle.surface import blocks, row_blocks, shared
+from pellicle.surface import blocks, in_threads, row_blocks
 
 from .preconditioner import OnContact
 
@@ -187,7 +187,7 @@ class _Iterate:
 
     def update_displacement(self) -> None:
         """Add the change of the last iteration to the displacement."""
-        shared(self._add_change, row_blocks(self._displacement.shape))
+        in_threads(self._add_change, row_blocks(self._displacement.shape))
         self._change = None
 
     def _add_change(self, rows: slice) -> None:
@@ -216,7 +216,7 @@ class _Iterate:
             np.less(displacement[rows] - profile[rows], depth - margin, out=below[rows])
             np.greater(below[rows], contact[rows], out=below[rows])
 
-        shared(mark, row_blocks(contact.shape))
+        in_threads(mark, row_blocks(contact.shape))
         change, self._change = self._change, None
         tensile, penetrating = np.flatnonzero(pressure < 0), np.flatnonzero(below)
         number = tensile.size + penetrating.size
@@ -239,8 +239,8 @@ def _scatter(values: Array, unit: float, cells: Cells, field: NDArray[Any]) -> N
     def write(block: slice) -> None:
         flat[cells[block]] = values[block] / unit
 
-    shared(fill, row_blocks(field.shape))
-    shared(write, blocks(cells.size))
+    in_threads(fill, row_blocks(field.shape))
+    in_threads(write, blocks(cells.size))
 
 
 def _gathered(field: NDArray[Any], cells: Cells) -> NDArray[Any]:
@@ -250,7 +250,7 @@ def _gathered(field: NDArray[Any], cells: Cells) -> NDArray[Any]:
     def read(block: slice) -> None:
         values[block] = flat[cells[block]]
 
-    shared(read, blocks(cells.size))
+    in_threads(read, blocks(cells.size))
     return values
 
 
@@ -324,7 +324,7 @@ class _Directions:
             def subtract(block: slice) -> None:
                 direction[block] -= lift[block] * total
 
-            shared(subtract, blocks(direction.size))
+            in_threads(subtract, blocks(direction.size))
         if self._uniform:
             direction -= dot(self._uniform.inside, direction) / self._uniform.curvature
         return direction

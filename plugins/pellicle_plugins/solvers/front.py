@@ -49,7 +49,7 @@ class Front:
     contact: Mask
     gap: Array
     """[m]; infinite where there is no indenter."""
-    exerted: Array
+    law_traction: Array
     """Traction that the law exerts across it [Pa]."""
 
     @cached_property
@@ -73,14 +73,14 @@ class Front:
         limit = np.clip(np.abs(estimate), few_cells, max(few_cells, _MOST_SHARE * self.extent))
         return np.clip(gain * estimate, -limit, limit)
 
-    def moved(self, traction: Array, missed: Array, gain: float) -> tuple[Array, Mask]:
+    def move_front(self, traction: Array, missed: Array, gain: float) -> tuple[Array, Mask]:
         """Return tractions [Pa] and contact after the front has moved by what is ``missed``."""
         from scipy.ndimage import distance_transform_edt
 
         grid, contact = self.problem.grid, self.contact
-        zone = ((self.exerted < 0) | (missed != 0)) & ~contact
+        zone = ((self.law_traction < 0) | (missed != 0)) & ~contact
         shift = self._shift(zone, missed, gain)
-        steep = np.where(zone, slope(self.exerted, grid), 0.0)
+        steep = np.where(zone, slope(self.law_traction, grid), 0.0)
         following = traction + steep * shift
         greatest = float(np.abs(shift).max(where=zone, initial=0.0))
         # The slope of the zone is continued into the contact and beyond the zone.

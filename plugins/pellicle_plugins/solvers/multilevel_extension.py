@@ -11,9 +11,9 @@ from typing import Final
 import numpy as np
 
 from pellicle.arrays import Mask
-from pellicle.surface import blocks, shared
+from pellicle.surface import blocks, in_threads
 
-from .biharmonic import Field, Sweeps, wrapped
+from .biharmonic import Field, Sweeps, wrap_edges
 
 Moments = tuple[Field, ...]
 
@@ -156,7 +156,7 @@ def _coarse_weights(weight: Field | Mask, loss: np.float32) -> tuple[Field, Fiel
         else:
             np.subtract(_ONE, weight[fine], out=free[fine])
 
-    shared(compute, _blocks(coarse.shape))
+    in_threads(compute, _blocks(coarse.shape))
     return coarse, share, free
 
 
@@ -191,7 +191,7 @@ def _sum_of_block(fine: Field, share: Field | None = None) -> Field:
         sums = _sums(fine[_fine(rows)])
         np.multiply(sums, _ONE if share is None else share[rows], out=coarse[rows])
 
-    shared(add, _blocks(coarse.shape))
+    in_threads(add, _blocks(coarse.shape))
     return coarse
 
 
@@ -219,7 +219,7 @@ def _add_repeated(coarse: Field, share: Field, fine: Field) -> None:
             target[0::2] += repeated
             target[1::2] += repeated
 
-    shared(add, _blocks(coarse.shape))
+    in_threads(add, _blocks(coarse.shape))
 
 
 def _interpolate(coarse: Field, free: Field | Mask, own: Field) -> Field:
@@ -231,7 +231,7 @@ def _interpolate(coarse: Field, free: Field | Mask, own: Field) -> Field:
         nx, ny = coarse.shape
         own += free * (_interpolation(nx) @ coarse @ _interpolation(ny).T)
         return own
-    wide = wrapped(coarse)
+    wide = wrap_edges(coarse)
     wide *= _QUARTER**coarse.ndim
     if coarse.ndim == 1:
         fine = np.empty_like(own)
@@ -249,7 +249,7 @@ def _interpolate(coarse: Field, free: Field | Mask, own: Field) -> Field:
         fine *= free[_fine(rows)]
         own[_fine(rows)] += fine
 
-    shared(add, _blocks(coarse.shape))
+    in_threads(add, _blocks(coarse.shape))
     return own
 
 
@@ -277,7 +277,7 @@ def _transposed_interpolate(fine: Field, free: Field | Mask) -> Field:
         nearer[0] += fine[before] * free[before]
         np.multiply(_transposed_refine(nearer), _QUARTER * _QUARTER, out=coarse[rows])
 
-    shared(gather, _blocks(coarse.shape))
+    in_threads(gather, _blocks(coarse.shape))
     return coarse
 
 

@@ -20,7 +20,7 @@ _COARSE_TOLERANCE: Final = 1e-5
 _COARSEST: Final = 48
 
 
-def prolonged(solver: ScaledSolver, problem: Problem) -> State | None:
+def coarse_start(solver: ScaledSolver, problem: Problem) -> State | None:
     """Return the state of a coarser grid, by ``solver``, on the grid of ``problem``.
 
     None if the grid is coarse, its kernel needs it, or nothing is in contact on the coarser one.

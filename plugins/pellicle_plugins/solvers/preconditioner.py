@@ -67,7 +67,7 @@ class Preconditioner:
     def __init__(self, operator: Operator) -> None:
         self._operator = operator
         self._shape = operator.grid.shape
-        scale, parts = operator.made.get(Preconditioner, (None, None))
+        scale, parts = operator.cache.get(Preconditioner, (None, None))
         if parts is None or scale != operator.greatest:
             parts = _Parts.of(operator)
             operator.keep(Preconditioner, (operator.greatest, parts))
@@ -195,12 +195,12 @@ class OnContact:
         direction *= np.float32(size)
         return direction
 
-    def extended(self, values: Array | Field) -> Field:
+    def extend(self, values: Array | Field) -> Field:
         """Return E applied to one value per cell of `cells`, on the grid."""
         nx, ny = self.contact.shape
         return self._apply(values)[:nx, :ny]
 
-    def transferred(self, forces: Array, out: Array | None = None) -> Array:
+    def transfer(self, forces: Array, out: Array | None = None) -> Array:
         """Return forces [Pa] after transferring those off the contact onto it by Eᵀ.
 
         ``out`` is in C order and may be ``forces``.

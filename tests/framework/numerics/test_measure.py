@@ -10,7 +10,7 @@ from pellicle.arrays import Array, Mask
 from pellicle.contact.attraction import Attraction, attraction
 from pellicle.contact.equilibrium import measure, measure_stiffness
 from pellicle.contact.law import Law
-from pellicle.contact.masks import dilated
+from pellicle.contact.masks import dilate
 from pellicle.contact.problem import Depth, Force, Problem
 from pellicle.grid import Boundary
 from pellicle.surface import operator_of
@@ -134,13 +134,13 @@ def test_boxes(boundary: Boundary, cells: int) -> None:
     for shape in ((1, 1), (1, 9), (9, 1), (12, 17), (30, 30)):
         mask = rng.random(shape) < 0.02
         mask.flat[0] = True
-        np.testing.assert_array_equal(dilated(mask, boundary, cells), boxes(mask, boundary, cells))
+        np.testing.assert_array_equal(dilate(mask, boundary, cells), boxes(mask, boundary, cells))
 
 
 def test_a_line() -> None:
     """A set on one axis is dilated along it."""
     line = np.arange(8) == 0
-    assert np.flatnonzero(dilated(line, cells=2)).tolist() == [0, 1, 2, 6, 7]
+    assert np.flatnonzero(dilate(line, cells=2)).tolist() == [0, 1, 2, 6, 7]
 
 
 SHAPE = (11, 14)

@@ -21,7 +21,7 @@ class Case(NamedTuple):
 def _cases() -> Iterator[Case]:
     solves = product(("rough", "punch", "smooth"), (0.0, 0.02, 1.0), (64, 128, 256))
     for case, tension, points in solves:
-        count = partial(reader.cost_applications, case, tension, points)
+        count = partial(reader.unit_applications, case, tension, points)
         yield Case(f"{case}, s = {tension:g} L, {points}", count, points > 128)
     for case, kernel in product(("rough", "free"), KERNELS):
         count = partial(reader.kernel_applications, case, kernel, 64)

@@ -12,13 +12,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
-import cost
 import numpy as np
 import operator_counts
 import xarray as xr
 
 import pellicle as pl
 from pellicle.arrays import Array
+from pellicle.contact import Problem
+from pellicle.surface import operator_of
 from pellicle_fit.config import FitConfig
 from pellicle_fit.contact.curve import Curve
 from pellicle_fit.effect import Effect, Sizes, Solid
@@ -52,12 +53,10 @@ class Interrupting(pl.Output):
     after: ClassVar[int]
 
     def step(self, dataset: xr.Dataset, stem: Path) -> None:
-        """Raise KeyboardInterrupt if the step is the one."""
         if dataset["step"].item() == self.after:
             raise KeyboardInterrupt
 
     def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
-        """Write nothing."""
         return ()
 
 
@@ -96,12 +95,28 @@ def solver_tolerance(configuration: Mapping[str, Any]) -> float:
 # --- Operator applications of the benchmarks -------------------------------------------------
 
 
-def cost_applications(case: str, tension: float, points: int) -> int:
-    """Return the applications on the finest grid of a case of `cost`."""
-    problem, tolerance, _ = cost.problem(case, points, tension)
-    before = problem.operator.applications
-    pl.solver("active_set", tolerance=tolerance).solve(problem, None, lambda *_: None)
-    return problem.operator.applications - before
+def unit_applications(case: str, tension: float, points: int) -> int:
+    """Return the applications on the finest grid of a case in units of the domain L, E* = 1.
+
+    Rough surfaces have a cut-off of 16 cells: periodic, at a mean pressure of 0.1 × rms slope, or a
+    free punch at a depth of 0.1. A smooth paraboloid is in a domain of twice the radius of Hertz.
+    """
+    grid = pl.Grid(points=points, size=1.0, boundary="periodic" if case == "rough" else "free")
+    kernel = pl.kernel("tensed_membrane", reduced_modulus=1.0, tension=tension / 2)
+    rough = {"rms_height": 0.01, "cutoff_wavelength": 16 / points, "seed": 1}
+    indenter = {
+        "rough": lambda: pl.indenter("self_affine", hurst=0.8, **rough),
+        "punch": lambda: pl.indenter("self_affine", hurst=0.7, **rough),
+        "smooth": lambda: pl.indenter("paraboloid", radius=2.236),
+    }[case]()
+    profile = indenter.profile(*grid.coordinates())
+    slope = np.sqrt(np.mean(np.hypot(*np.gradient(profile, 1 / points)) ** 2))
+    load = pl.Depth(0.1118 if case == "smooth" else 0.1)
+    control = pl.Force(0.1 * float(slope)) if case == "rough" else load
+    problem = Problem(grid, operator_of(kernel, grid), profile, control)
+    solver = pl.solver("active_set", tolerance=1e-8 if case == "smooth" else 1e-6)
+    solver.solve(problem, None, lambda *_: None)
+    return problem.operator.applications
 
 
 def kernel_applications(case: str, kernel: str, points: int) -> int:

@@ -44,11 +44,9 @@ class Quartic(pl.Indenter):
     pointed: ClassVar[bool] = False
 
     def profile(self, x: Array, y: Array) -> Array:
-        """Return f [m]."""
         return -((x**2 + y**2) ** 2) / self.length**3
 
     def abel_slope(self, x: Array) -> Array:
-        """Return h'(x)."""
         return 32 / 3 * x**3 / self.length**3
 
 

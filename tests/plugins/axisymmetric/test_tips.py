@@ -118,11 +118,9 @@ class Quartic(BodyOfRevolution):
     type: Literal["quartic"] = "quartic"
 
     def profile(self, x: Array, y: Array) -> Array:
-        """Return −r⁴/L³ [m]."""
         return -((x**2 + y**2) ** 2) / 1e-15
 
     def abel_slope(self, x: Array) -> Array:
-        """Return h'(x)."""
         return 32 / 3 * x**3 / 1e-15
 
 

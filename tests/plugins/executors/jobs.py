@@ -34,7 +34,6 @@ class Job:
 
     @property
     def name(self) -> str:
-        """What messages call it."""
         return f"job {self.number}"
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import cloudpickle
 import pytest
 
-from pellicle.batch import locked
+from pellicle.batch import lock_files
 from pellicle.components import Say
 from tests.plugins.executors.jobs import Job, dask, posix, silence, worker_of
 
@@ -67,7 +67,7 @@ def go_on(job: Job, say: Say) -> int:
 
     A piece cannot be interrupted. Return how often the work was begun.
     """
-    with locked(job.folder, f"{job.number}"):
+    with lock_files(job.folder, f"{job.number}"):
         begun, done = (job.folder / f"{job.number}.{name}" for name in ("begun", "done"))
         with begun.open("a") as file:
             file.write("x")

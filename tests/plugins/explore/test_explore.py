@@ -25,10 +25,10 @@ import pellicle as pl
 from pellicle.errors import ConfigError
 from pellicle.units import Quantity
 from pellicle_explore import solving
-from pellicle_explore.controls import changed, configuration_of, controls
+from pellicle_explore.controls import change_control, configuration_of, controls
 from pellicle_explore.page import Explorer
 from pellicle_explore.server import serve
-from pellicle_explore.solving import Frame, solved
+from pellicle_explore.solving import Frame, solve_frame
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
@@ -112,8 +112,8 @@ def test_what_is_shown_is_what_a_run_of_the_file_gives(start: pl.Run, tmp_path: 
     for control, text in zip(
         controls(start), ("7.31 mN/m", "2.2 kPa", "0.31", "17 um", "11 um", "1.3 um"), strict=True
     ):
-        given, _ = changed(given, control, text)
-    frame = solved(given)
+        given, _ = change_control(given, control, text)
+    frame = solve_frame(given)
     path = tmp_path / "explored.toml"
     path.write_text(tomli_w.dumps(given), encoding="utf-8")
     data = pl.run(path, progress=False, threads=1).dataset
@@ -129,7 +129,7 @@ def test_the_cut_goes_through_the_deepest_point(start: pl.Run) -> None:
     page.rest()
     cut: Any = page.explorer._plots._cut.data
     line: Any = page.explorer._plots._line.data
-    pressure = solved(configuration_of(start)).steps["pressure"].values[-1].max()
+    pressure = solve_frame(configuration_of(start)).steps["pressure"].values[-1].max()
     assert line["pressure"].max() == pytest.approx(pressure / 1e3)
     beneath = np.isfinite(cut["indenter"])
     assert np.all(cut["indenter"][beneath] >= cut["surface"][beneath])
@@ -138,7 +138,7 @@ def test_the_cut_goes_through_the_deepest_point(start: pl.Run) -> None:
 
 def test_curves_are_in_the_units_of_their_axes(start: pl.Run) -> None:
     """Numbers that are drawn, in the unit beside the axis, are those of the run in SI."""
-    page, (steps, _, cut, line, _) = Page(start), solved(configuration_of(start))
+    page, (steps, _, cut, line, _) = Page(start), solve_frame(configuration_of(start))
     page.rest()
     plots: Any = page.explorer._plots
     for plot, source, *drawn in (
@@ -160,7 +160,7 @@ def test_drawing_leaves_the_warnings_of_the_process_alone(
     def refuse(*_: Any, **__: Any) -> None:
         raise AssertionError("warnings are caught while a frame is drawn")
 
-    frame, page = solved(configuration_of(start)), Page(start)
+    frame, page = solve_frame(configuration_of(start)), Page(start)
     page.rest()
     with monkeypatch.context() as during:
         during.setattr("warnings.catch_warnings", refuse)
@@ -301,7 +301,7 @@ def test_a_long_solve_is_cancelled(
 
     monkeypatch.setattr(solving, "_LONGEST_WAIT", 0.0)
     with monkeypatch.context() as slow:
-        slow.setattr(solving, "solved", endless)
+        slow.setattr(solving, "solve_frame", endless)
         page = Page(start)
         assert began.wait(20)
     if is_closed:
@@ -458,8 +458,8 @@ def test_sliders_change_the_curves(
     value = wait_for(
         "return fields['surface tension'].value === '6.295 mN/m' && fields['surface tension'].value"
     )
-    given, _ = changed(configuration_of(start), next(controls(start)), value)
-    expected = solved(given).steps["force"].values
+    given, _ = change_control(configuration_of(start), next(controls(start)), value)
+    expected = solve_frame(given).steps["force"].values
     text = 'models.find(m => m.type === "PreText").text'
     saved = wait_for(f"return {text}.includes('6.295 mN/m') && {text}")
     assert tomllib.loads(saved) == given

@@ -29,6 +29,7 @@ Z = np.array([1.5, 2.5, 3.5, 4.5])
 """[um]"""
 F = np.array([0.25, 0.5, 1.25, 2.0])
 """[nN]"""
+NAN = float("nan")
 BY_NUMBER = "1 = position um, 2 = force nN"
 
 
@@ -50,6 +51,20 @@ def rows(separator: str = ",", comma: bool = False, end: str = "\n") -> str:
     return text.replace(".", ",") if comma else text
 
 
+def numbered(separator: str) -> str:
+    """Return the numbers as lines that begin with their number."""
+    lines = rows(separator).splitlines()
+    return "\n".join(f"{number}{separator}{line}" for number, line in enumerate(lines))
+
+
+SHIFTED = {
+    "comma": (",", "Z [um],F [nN]", "Z = position, F = force"),
+    "semicolon": (";", "position [um];force [nN]", None),
+    "tab": ("\t", "Z\tF", "Z = position um, F = force nN"),
+    "blank": (" ", "position [um] force [nN]", None),
+    "quoted names": (" ", '"position [um]" "force [nN]"', None),
+}
+"""Separator, header and columns of tables whose rows have a number in front."""
 TABLES: dict[str, tuple[str, str | None]] = {
     "comment header": (f"# position [um],force [nN]\n{rows()}", None),
     "last comment": (f"# by A. Nother\n# position [um] force [nN]\n{rows(' ')}", None),
@@ -79,6 +94,11 @@ TABLES: dict[str, tuple[str, str | None]] = {
         "1 = position um, 3 = force nN",
     ),
     "columns of one name, one wanted": (f"Z,F,F\n{rows()}", "Z = position um, 2 = force nN"),
+    **{
+        f"numbered rows, {kind}": (f"{mark}{header}\n{numbered(mark)}", columns)
+        for kind, (mark, header, columns) in SHIFTED.items()
+        if mark != " "
+    },
 }
 
 
@@ -177,67 +197,114 @@ def test_decimal_commas_between_commas_in_a_list_of_files(tmp_path: Path, row: s
     assert is_the_curve(*pl.read_curves(path).values())
 
 
-@pytest.mark.parametrize("mark", ["\t", ";", ","])
-@pytest.mark.parametrize("cell", ["1,000", "-1,234,567.5", "1,5"])
-def test_commas_beside_points_are_refused(tmp_path: Path, mark: str, cell: str) -> None:
-    """Whether they group thousands is not guessed."""
-    path = tmp_path / "a.tsv"
-    cell = f'"{cell}"' if mark == "," else cell
-    path.write_text(f"position [nm]{mark}force [nN]\n999.5{mark}1\n{cell}{mark}2\n")
-    with pytest.raises(pl.ConfigError, match="without separators of thousands"):
-        curves(path)
+NUMBERS: list[tuple[str, str | None, list[float], list[float]]] = [
+    ("position [um],force [nN]\n1.5,2.7,,a remark\n1.6,2.9\n", None, [1500, 1600], [2.7, 2.9]),
+    ("9;5;0;2\n10;6;0;7\n11;1;1;9\n", BY_NUMBER, [9e3, 1e4, 1.1e4], [5, 6, 1]),
+    ("position [um]\tforce [nN]\n0\t1\n0,125\t2\n1,125\t3\n", None, [0, 125, 1125], [1, 2, 3]),
+    ("depth [nm];force [nN]\n1,5;2,25\n2,5;\n3,5;1_0\n", None, [1.5, 2.5, 3.5], [2.25, NAN, NAN]),
+]
+"""Tables with their columns, and the positions [nm] and forces [nN] in them."""
 
 
-def test_decimal_commas_between_commas_are_refused(tmp_path: Path) -> None:
-    """They would split numbers: 1,5 at 2,7 was a position of 1 at a force of 5."""
-    path = tmp_path / "curve.csv"
-    path.write_text("position [um],force [nN]\n1,5,2,7\n1,6,2,9\n", encoding="utf-8")
-    with pytest.raises(pl.ConfigError, match=r"has 4 numbers below 2 names \(1,5,2,7\)"):
-        curves(path)
-    path.write_text("position [um],force [nN]\n1.5,2.7,,a remark\n1.6,2.9\n", encoding="utf-8")
-    assert curves(path)[""].force == pytest.approx([2.7e-9, 2.9e-9])
+@pytest.mark.parametrize(("text", "columns", "position", "force"), NUMBERS)
+def test_numbers(
+    tmp_path: Path, text: str, columns: str | None, position: list[float], force: list[float]
+) -> None:
+    """Remarks, whole numbers, decimal commas and cells without a number are taken as such."""
+    (tmp_path / "a.csv").write_text(text, encoding="utf-8")
+    curve = curves(tmp_path / "a.csv", columns)[""]
+    assert curve.position * 1e9 == pytest.approx(position)
+    assert curve.force * 1e9 == pytest.approx(force, nan_ok=True)
+    assert curve.is_depth == text.startswith("depth")
 
 
-SHIFTED = {
-    "comma": (",", "Z [um],F [nN]", "Z = position, F = force"),
-    "semicolon": (";", "position [um];force [nN]", None),
-    "tab": ("\t", "Z\tF", "Z = position um, F = force nN"),
-    "blank": (" ", "position [um] force [nN]", None),
-    "quoted names": (" ", '"position [um]" "force [nN]"', None),
+LONG = np.linspace(0.0, 1.0, 40)
+
+
+def both(place: str, deflection: str = "deflection [nm]", k: float = 0.05) -> str:
+    """Return a table with force and deflection, of a cantilever with an offset, of 1 N/m."""
+    force = 50 * LONG**1.5 - 3
+    bend = force / k * (0.01 if "[V]" in deflection else 1.0) + 7
+    moved = {"position": 1.0, "height": -1.0}[place] * LONG
+    moved = moved - (force / k * 1e-3 if place == "height" else 0.0)
+    rows = [f"{z:.6f},{f:.4f},{d:.4f}" for z, f, d in zip(moved, force, bend, strict=True)]
+    return "\n".join([f"{place} [um],force [nN],{deflection}", *rows])
+
+
+WHOLE = "\n".join(f"{z:,}\t{z**1.5 * 1e-3:.3f}" for z in range(0, 1250, 50))
+DISTANCES = "\n".join(f"{z}\t{f}\t{f}" for z, f in zip(Z, F, strict=True))
+REFUSED: dict[str, list[str | tuple[str, str]]] = {
+    # Whether they group thousands is not guessed.
+    "without separators of thousands": [
+        *(
+            f"position [nm]{mark}force [nN]\n999.5{mark}1\n{quote}{cell}{quote}{mark}2\n"
+            for mark, quote in (("\t", ""), (";", ""), (",", '"'))
+            for cell in ("1,000", "-1,234,567.5", "1,5")
+        ),
+        *(
+            f"position [nm];force [nN]\n999,5;1\n1{mark}000,5;2\n"
+            for mark in (" ", "'", "\u00a0", "\u202f", "’")
+        ),
+    ],
+    # Nanometres up to 1,200 are not read as 1.2 nm, which would leave the deep rows out.
+    "column position has '1,000' beside '50', so": [f"position [nm]\tforce [nN]\n{WHOLE}"],
+    # Where all rows have four digits, the other column tells.
+    "may be those of decimals or of thousands": [
+        "position [nm];force [nN]\n2,500;-0.01\n3,500;0.5\n",
+        "position [nm];force [nN]\n2.500;-0,01\n3.500;0,5\n",
+    ],
+    # 1,5 at 2,7 was a position of 1 at a force of 5.
+    r"has 4 numbers below 2 names \(1,5,2,7\)": [f"{UNITS}\n1,5,2,7\n1,6,2,9\n"],
+    "has 4 numbers below 2 names": [
+        f"{UNITS}\n{rows(comma=True)}",
+        (f"Z [um],F [nN]\n{rows(comma=True)}", "Z = position um, F = force nN"),
+    ],
+    "each second of which looks like decimals": [
+        ("9,5,0,2\n10,6,0,7\n11,1,1,9\n12,3,2,4\n", BY_NUMBER)
+    ],
+    # Of decimals there would be four.
+    "has '1', '2'; missing": ["".join(f"{n},{n}00\n" for n in range(1, 9))],
+    # Under a header without its name each column would be taken for the one before.
+    "has 3 numbers below 2 names": [
+        (f"{header}\n{numbered(mark)}", columns) if columns else f"{header}\n{numbered(mark)}"
+        for mark, header, columns in SHIFTED.values()
+    ],
+    **{
+        f"missing: one column '{name}'": [f"{UNITS},{name},{name}\n0,1,2,3\n4,5,6,7\n"]
+        for name in ("force", "time")
+    },
+    # A length is not in seconds, whatever its name is.
+    '--columns "<column> = height <unit>, Defl = defl': [
+        f"{place}\tDefl [nm]\n{rows(chr(9))}"
+        for place in ("Z [s]", "Sensor (ms)", "Ramp_s", "Extension [V]", "Zeit", "Temps", "tiempo")
+    ],
+    # A signal in volts is no deflection beside one; a force and a deflection are both kept.
+    **{
+        f'--columns "Distance = {columns}"': [f"Distance (um)\t{signals}\n{DISTANCES}"]
+        for signals, columns in {
+            "Setpoint (V)\tDefl (nm)": "extension um, Defl = deflection nm",
+            "Setpoint (V)\tLoad (nN)": "position um, Load = force nN",
+            "Deflection (nm)\tForce (nN)": "extension um, Force = force nN, "
+            "Deflection = deflection nm",
+        }.items()
+    },
+    # It would be added where it has to be subtracted.
+    "deflection: falls as the force grows": [both("height", k=-0.05)],
 }
+"""Tables, some with columns, by what the message says."""
 
 
-@pytest.mark.parametrize("kind", SHIFTED)
-def test_rows_that_have_a_number_in_front_are_refused(tmp_path: Path, kind: str) -> None:
-    """Under a header without its name each column would be taken for the one before."""
-    mark, header, columns = SHIFTED[kind]
-    lines = [f"{n}{mark}{row}" for n, row in enumerate(rows(mark).splitlines())]
-    path = tmp_path / "a.txt"
-    path.write_text("\n".join([header, *lines]), encoding="utf-8")
-    with pytest.raises(pl.ConfigError, match="has 3 numbers below 2 names"):
-        curves(path, columns)
-    path.write_text("\n".join([mark + header, *lines]), encoding="utf-8")
-    if mark != " ":
-        assert is_the_curve(curves(path, columns)[""])
-
-
-@pytest.mark.parametrize("columns", [None, "Z = position um, F = force nN"])
-def test_commas_that_are_both_are_refused(tmp_path: Path, columns: str | None) -> None:
-    """Rows such as 1,5,0,25 under two names are no numbers, whoever names them."""
-    header = "Z [um],F [nN]" if columns else "position [um],force [nN]"
-    (tmp_path / "a.csv").write_text(f"{header}\n{rows(comma=True)}", encoding="utf-8")
-    with pytest.raises(pl.ConfigError, match="has 4 numbers below 2 names"):
-        curves(tmp_path / "a.csv", columns)
-    text = "9,5,0,2\n10,6,0,7\n11,1,1,9\n12,3,2,4\n"
-    (tmp_path / "b.csv").write_text(text, encoding="utf-8")
-    with pytest.raises(pl.ConfigError, match="each second of which looks like decimals"):
-        curves(tmp_path / "b.csv", BY_NUMBER)
-    two = "".join(f"{n},{n}00\n" for n in range(1, 9))
-    (tmp_path / "b.csv").write_text(two, encoding="utf-8")
-    with pytest.raises(pl.ConfigError, match="has '1', '2'; missing"):
-        curves(tmp_path / "b.csv", None)
-    (tmp_path / "b.csv").write_text(text.replace(",", ";"), encoding="utf-8")
-    assert curves(tmp_path / "b.csv", BY_NUMBER)[""].position[0] == pytest.approx(9e-6)
+@pytest.mark.parametrize(
+    ("message", "table"), [(message, table) for message, them in REFUSED.items() for table in them]
+)
+def test_tables_that_are_refused(
+    tmp_path: Path, message: str, table: str | tuple[str, str]
+) -> None:
+    """No column is guessed, taken for another or left out in silence."""
+    text, columns = (table, None) if isinstance(table, str) else table
+    (tmp_path / "a.txt").write_text(text, encoding="utf-8")
+    with pytest.raises(pl.ConfigError, match=message):
+        curves(tmp_path / "a.txt", columns)
 
 
 @pytest.mark.parametrize("columns", [None, BY_NUMBER])
@@ -249,15 +316,6 @@ def test_signs_of_other_countries(tmp_path: Path, columns: str | None) -> None:
     for other in (text.replace(".", ","), text.replace("-", "\N{MINUS SIGN}")):
         path.write_text(other, encoding="utf-8")
         assert curves(path, columns)[""].position == pytest.approx(-1e-6 * Z)
-
-
-@pytest.mark.parametrize("mark", [" ", "'", "\u00a0", "\u202f", "’"])
-def test_other_separators_of_thousands_are_refused(tmp_path: Path, mark: str) -> None:
-    """Rows of large numbers would be left out."""
-    path = tmp_path / "a.csv"
-    path.write_text(f"position [nm];force [nN]\n999,5;1\n1{mark}000,5;2\n", encoding="utf-8")
-    with pytest.raises(pl.ConfigError, match="without separators of thousands"):
-        curves(path)
 
 
 def test_rows_without_a_number_are_counted(tmp_path: Path) -> None:
@@ -372,19 +430,6 @@ def test_constants_above_a_table(tmp_path: Path, preamble: str) -> None:
         curves(path)
 
 
-LONG = np.linspace(0.0, 1.0, 40)
-
-
-def _both(place: str, deflection: str = "deflection [nm]", k: float = 0.05) -> str:
-    """Return a table with force and deflection, of a cantilever with an offset, of 1 N/m."""
-    force = 50 * LONG**1.5 - 3
-    bend = force / k * (0.01 if "[V]" in deflection else 1.0) + 7
-    moved = {"position": 1.0, "height": -1.0}[place] * LONG
-    moved = moved - (force / k * 1e-3 if place == "height" else 0.0)
-    rows = [f"{z:.6f},{f:.4f},{d:.4f}" for z, f, d in zip(moved, force, bend, strict=True)]
-    return "\n".join([f"{place} [um],force [nN],{deflection}", *rows])
-
-
 @pytest.mark.parametrize("place", ["position", "height"])
 @pytest.mark.parametrize(
     ("deflection", "options"),
@@ -395,7 +440,7 @@ def test_a_spring_constant_that_contradicts_columns(
 ) -> None:
     """Force over deflection is the file's own; one that is given scales the force, and is told."""
     path = tmp_path / "a.csv"
-    path.write_text(_both(place, deflection))
+    path.write_text(both(place, deflection))
     own = curves(path, **options)[""]
     same = curves(path, spring_constant="0.05 N/m", **options)[""]
     assert same.stiffness == 0.05
@@ -405,18 +450,11 @@ def test_a_spring_constant_that_contradicts_columns(
     np.testing.assert_allclose(changed.position, own.position)
     assert changed.stiffness == 0.1
     assert "in place of the file's 50 mN/m: the force is scaled by 2" in str(changed.messages)
-    path.write_text(f"# spring constant: 0.06 N/m\n{_both(place, deflection)}")
+    path.write_text(f"# spring constant: 0.06 N/m\n{both(place, deflection)}")
     with pytest.raises(pl.ConfigError, match="states 60 mN/m, and its force is 50 mN/m times"):
         curves(path, **options)
     chosen = curves(path, spring_constant="0.05 N/m", **options)[""]
     np.testing.assert_allclose(chosen.force, own.force)
-
-
-def test_a_deflection_of_the_other_sign(tmp_path: Path) -> None:
-    """It would be added where it has to be subtracted."""
-    (tmp_path / "a.csv").write_text(_both("height", k=-0.05))
-    with pytest.raises(pl.ConfigError, match="deflection: falls as the force grows"):
-        curves(tmp_path / "a.csv")
 
 
 def test_a_spring_constant_in_a_column(tmp_path: Path) -> None:
@@ -446,16 +484,6 @@ def test_a_unit_that_contradicts_the_header(tmp_path: Path) -> None:
     assert is_the_curve(curves(tmp_path / "a.h5", "z = position, f = force nN")[""])
     with pytest.raises(pl.ConfigError, match="'z' is in um by its header, and nm was given"):
         curves(tmp_path / "a.h5", "z = position nm, f = force nN")
-
-
-@pytest.mark.parametrize(
-    "place", ["Z [s]", "Sensor (ms)", "Ramp_s", "Extension [V]", "Zeit", "Temps", "tiempo"]
-)
-def test_a_column_of_another_unit_is_not_offered(tmp_path: Path, place: str) -> None:
-    """A length is not in seconds, whatever its name is."""
-    (tmp_path / "a.txt").write_text(f"{place}\tDefl [nm]\n{rows(chr(9))}")
-    with pytest.raises(pl.ConfigError, match='--columns "<column> = height <unit>, Defl = defl'):
-        curves(tmp_path / "a.txt")
 
 
 def _calls(function: Callable[[], object]) -> int:
@@ -509,31 +537,6 @@ def test_one_message_for_each_kind_of_header(tmp_path: Path) -> None:
     assert not any("install" in status for status in statuses)
 
 
-def test_a_depth_and_a_cell_without_a_number(tmp_path: Path) -> None:
-    """Between semicolons a comma is decimal, and what is empty is no number."""
-    (tmp_path / "a.csv").write_text("depth [nm];force [nN]\n1,5;2,25\n2,5;\n3,5;1_0\n")
-    curve = curves(tmp_path / "a.csv")[""]
-    assert curve.is_depth
-    assert curve.position == pytest.approx([1.5e-9, 2.5e-9, 3.5e-9])
-    assert curve.force == pytest.approx([2.25e-9, np.nan, np.nan], nan_ok=True)
-
-
-def test_thousands_that_may_be_decimals_are_refused(tmp_path: Path) -> None:
-    """Whole nanometres up to 1,200 are not read as 1.2 nm, which would leave the deep rows out."""
-    path = tmp_path / "a.tsv"
-    lines = [f"{z:,}\t{z**1.5 * 1e-3:.3f}" for z in range(0, 1250, 50)]
-    path.write_text("position [nm]\tforce [nN]\n" + "\n".join(lines))
-    with pytest.raises(pl.ConfigError, match="column position has '1,000' beside '50', so"):
-        curves(path)
-    # Where all rows have four digits, the other column tells.
-    for rows in ("2,500;-0.01\n3,500;0.5\n", "2.500;-0,01\n3.500;0,5\n"):
-        path.write_text(f"position [nm];force [nN]\n{rows}")
-        with pytest.raises(pl.ConfigError, match="may be those of decimals or of thousands"):
-            curves(path)
-    path.write_text("position [um]\tforce [nN]\n0\t1\n0,125\t2\n1,125\t3\n")
-    assert curves(path)[""].position.tolist() == pytest.approx([0, 0.125e-6, 1.125e-6])
-
-
 @pytest.mark.parametrize(
     ("header", "times", "seen"),
     [
@@ -579,26 +582,6 @@ EXPORTS = {
     "a,F [nN]": "<column> = height <unit>, F = force nN",
     "height [m],deflection [V]": "",
 }
-
-
-@pytest.mark.parametrize(
-    ("signals", "columns"),
-    [
-        ("Setpoint (V)\tDefl (nm)", "Distance = extension um, Defl = deflection nm"),
-        ("Setpoint (V)\tLoad (nN)", "Distance = position um, Load = force nN"),
-        (
-            "Deflection (nm)\tForce (nN)",
-            "Distance = extension um, Force = force nN, Deflection = deflection nm",
-        ),
-    ],
-)
-def test_a_name_says_more_than_a_unit(tmp_path: Path, signals: str, columns: str) -> None:
-    """A signal in volts is no deflection beside one; a force and a deflection are both kept."""
-    lines = [f"{z}\t{f}\t{f}" for z, f in zip(Z, F, strict=True)]
-    text = "\n".join([f"Distance (um)\t{signals}", *lines])
-    (tmp_path / "a.txt").write_text(text, encoding="utf-8")
-    with pytest.raises(pl.ConfigError, match=rf'--columns "{columns}"'):
-        curves(tmp_path / "a.txt")
 
 
 @pytest.mark.parametrize("header", EXPORTS)
@@ -744,15 +727,6 @@ def test_matlab(tmp_path: Path, variables: dict[str, Any], columns: str, count: 
     assert all(map(is_the_curve, read_curves.values()))
     with pytest.raises(pl.ConfigError, match="; missing: a position"):
         curves(path)
-
-
-@pytest.mark.parametrize("twice", ["force", "time"])
-def test_a_column_that_is_there_twice_is_asked_for(tmp_path: Path, twice: str) -> None:
-    """Neither is silently taken or left out."""
-    header = f"position [um],force [nN],{twice},{twice}"
-    (tmp_path / "a.csv").write_text(f"{header}\n0,1,2,3\n4,5,6,7\n")
-    with pytest.raises(pl.ConfigError, match=f"missing: one column '{twice}'"):
-        curves(tmp_path / "a.csv")
 
 
 def _ramp(pause: str, noise: float) -> tuple[Array, Array]:

@@ -311,8 +311,6 @@ class Softening(Bends):
     reach: Annotated[float, Fitted("m", above=0, log=True)] = fitted("depth [m]")
 
     def contact(self, contact: Contact) -> Contact:
-        """Return F/(1 + δ/10d)."""
-
         def area(depth: Array, length: float) -> Array:
             rest = 1 + np.maximum(depth, 0) / self.reach / 10
             return contact.area(depth, length) / rest
@@ -380,7 +378,6 @@ class Push(Adds):
     over: Annotated[float, Fitted("m", above=0, log=True)] = fitted("length [m]")
 
     def force(self, contact: Contact, curve: Curve, depth: Array) -> Array:
-        """Return F e^(δ/λ), F in contact [N]."""
         return self.push * np.exp(np.minimum(depth, 0) / self.over)
 
 
@@ -391,7 +388,6 @@ class Soft(Yields):
     soft: Annotated[float, Fitted("m/N")] = fitted("compliance [m/N]")
 
     def give(self, force: Array) -> Array:
-        """Return cF [m]."""
         return self.soft * force
 
 
@@ -470,7 +466,6 @@ def test_a_fit_refuses_what_is_broken() -> None:
         """Force of a wrong shape."""
 
         def force(self, contact: Contact, curve: Curve, depth: Array) -> Array:
-            """Return one force."""
             return self.push * depth[:1]
 
     with pytest.raises(pl.PluginError, match="effect 'push': Liar breaks the rule returns_a_num"):
@@ -485,10 +480,9 @@ def test_what_fails_at_work_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
         """Force that fails on longer curves than those of the kit."""
 
         def force(self, contact: Contact, curve: Curve, depth: Array) -> Array:
-            """Return the force [N]."""
             return super().force(contact, curve, depth if curve.span < 1.55e-6 else depth[10**9])
 
-    entry = SimpleNamespace(component=Late, origin=SimpleNamespace(is_own=False))
+    entry = SimpleNamespace(component=Late, origin=SimpleNamespace(is_built_in=False))
     installed = SimpleNamespace(components={"effect": {"push": entry}}, own=frozenset())
     monkeypatch.setattr("pellicle_fit.strangers.registry", lambda: installed)
     with pytest.raises(IndexError) as caught:

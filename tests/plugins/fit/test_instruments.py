@@ -2,6 +2,7 @@
 
 import sys
 import zipfile
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -36,10 +37,8 @@ SEEN = POSITION - NOISE / SPRING, FORCE + NOISE
 """Position and force that are to be read: noise of the deflection is in both."""
 
 
-@pytest.fixture(scope="module")
-def recording() -> instruments.Recording:
-    """Return what an instrument sees of the curve."""
-    return instruments.record(POSITION, FORCE, NOISE, SPRING)
+RECORDING = instruments.record(POSITION, FORCE, NOISE, SPRING)
+"""What an instrument sees of the curve."""
 
 
 def only(
@@ -58,10 +57,10 @@ def is_curve(measured: Measurement, position: Array, force: Array) -> bool:
 
 
 @pytest.mark.parametrize("name", instruments.WRITERS)
-def test_formats(tmp_path: Path, recording: instruments.Recording, name: str) -> None:
+def test_formats(tmp_path: Path, name: str) -> None:
     """Approach and retract are told apart, and the bending of the cantilever is subtracted."""
     path = tmp_path / name
-    instruments.WRITERS[name](path, recording)
+    instruments.WRITERS[name](path, RECORDING)
     calibration = GIVEN if name == "workshop.csv" else None
     position, force = SEEN
     approach, retract = (only(path, calibration, one) for one in ("approach", "retract"))
@@ -70,28 +69,26 @@ def test_formats(tmp_path: Path, recording: instruments.Recording, name: str) ->
 
 
 @pytest.mark.parametrize("name", instruments.MAPS)
-def test_maps(tmp_path: Path, recording: instruments.Recording, name: str) -> None:
+def test_maps(tmp_path: Path, name: str) -> None:
     """A file of several curves has each by its number."""
-    instruments.MAPS[name](tmp_path / name, [recording, recording])
+    instruments.MAPS[name](tmp_path / name, [RECORDING, RECORDING])
     curves = read(tmp_path / name)
     assert list(curves) == ["0", "1"]
     assert all(is_curve(clean(reader()), *SEEN) for reader in curves.values())
 
 
-def test_calibration_is_asked_for(tmp_path: Path, recording: instruments.Recording) -> None:
+def test_calibration_is_asked_for(tmp_path: Path) -> None:
     """A signal in volts needs spring constant and sensitivity, and the message says so."""
-    instruments.workshop(tmp_path / "workshop.csv", recording)
+    instruments.workshop(tmp_path / "workshop.csv", RECORDING)
     with pytest.raises(pl.ConfigError, match='--sensitivity "… nm/V" --spring-constant "… N/m"'):
         read(tmp_path / "workshop.csv")
 
 
 @pytest.mark.parametrize("name", instruments.WRITERS)
-def test_another_spring_constant_scales_the_force(
-    tmp_path: Path, recording: instruments.Recording, name: str
-) -> None:
+def test_another_spring_constant_scales_the_force(tmp_path: Path, name: str) -> None:
     """The deflection, and so the position of the tip, is what was measured; the record tells it."""
     path, new = tmp_path / name, 1.2 * SPRING
-    instruments.WRITERS[name](path, recording)
+    instruments.WRITERS[name](path, RECORDING)
     if name == "workshop.csv":
         # It states no constants, which its loader needs.
         (curve,) = (reader() for reader in read(path, GIVEN).values())
@@ -113,11 +110,11 @@ def test_another_spring_constant_scales_the_force(
 
 
 @pytest.mark.parametrize("sensitivity", ["61 m/A", "61 nm/nA", "0.061 um/nA"])
-def test_nova(tmp_path: Path, recording: instruments.Recording, sensitivity: str) -> None:
+def test_nova(tmp_path: Path, sensitivity: str) -> None:
     """Columns without names are taken for NT-MDT's with a warning; its signal is a current."""
     path = tmp_path / "nova.txt"
     options: dict[str, Any] = {"spring_constant": SPRING}
-    instruments.nova(path, recording, 61.0)
+    instruments.nova(path, RECORDING, 61.0)
     with pytest.raises(pl.ConfigError, match=r'NT-MDT.*missing: (.|\n)*--sensitivity "… nm/nA"'):
         only(path)
     for wrong in ("61 nm/V", "61 m/V", 61.0):
@@ -158,15 +155,15 @@ def test_a_table_with_names_is_no_instruments(tmp_path: Path, header: str, mark:
     assert f'--columns "{NAMED[header]}"' in str(raised.value)
 
 
-def test_curves_of_an_archive(tmp_path: Path, recording: instruments.Recording) -> None:
+def test_curves_of_an_archive(tmp_path: Path) -> None:
     """Curves that share a number are all kept; places may lie on a line; no warning is right."""
     path, given = tmp_path / "a.zip", Calibration(spring_constant=SPRING)
-    several = [replace(recording, force=f * recording.force) for f in (1, 2, 3)]
+    several = [replace(RECORDING, force=f * RECORDING.force) for f in (1, 2, 3)]
     instruments.archive(path, several, points=[1, 1, 2])
     curves = {label: reader() for label, reader in read(path, given).items()}
-    largest = {label: curve.force.max() / recording.force.max() for label, curve in curves.items()}
+    largest = {label: curve.force.max() / RECORDING.force.max() for label, curve in curves.items()}
     assert largest == pytest.approx({"1": 1, "1 (2)": 2, "2": 3})
-    instruments.archive(path, [recording] * 11, columns=11)
+    instruments.archive(path, [RECORDING] * 11, columns=11)
     curves = {label: reader() for label, reader in read(path, given).items()}
     assert list(curves) == [str(number) for number in range(1, 12)]
     assert [curve.site for curve in curves.values()] == [(1e-6 * n, 0) for n in range(11)]
@@ -175,12 +172,10 @@ def test_curves_of_an_archive(tmp_path: Path, recording: instruments.Recording) 
 
 @pytest.mark.parametrize("signal", ["N", "m", "V"])
 @pytest.mark.parametrize("heights", ["height", "verticalTipPosition smoothedMeasuredHeight"])
-def test_text_exports(
-    tmp_path: Path, recording: instruments.Recording, signal: str, heights: str
-) -> None:
+def test_text_exports(tmp_path: Path, signal: str, heights: str) -> None:
     """Two segments in one text are one curve in order of time, in the units that it states."""
     path = tmp_path / "export.txt"
-    instruments.jpk_text(path, recording, signal, heights)
+    instruments.jpk_text(path, RECORDING, signal, heights)
     (curve,) = (reader() for reader in read(path).values())
     assert curve.time == pytest.approx(1e-3 * np.arange(600))
     assert is_curve(clean(curve), *SEEN)
@@ -195,10 +190,10 @@ def test_text_exports(
         read(path)
 
 
-def test_groups_of_an_export(tmp_path: Path, recording: instruments.Recording) -> None:
+def test_groups_of_an_export(tmp_path: Path) -> None:
     """Whatever the groups of an export by afmformats are called, and whatever else is there."""
     path = tmp_path / "export.h5"
-    instruments.hdf5(path, recording)
+    instruments.hdf5(path, RECORDING)
     with h5py.File(path, "a") as file:
         file.move("0", "7")
         file.copy("7", "12")
@@ -209,21 +204,10 @@ def test_groups_of_an_export(tmp_path: Path, recording: instruments.Recording) -
     assert all(is_curve(clean(reader()), *SEEN) for reader in curves.values())
 
 
-@pytest.mark.parametrize("styles", [("extend",), ("extend", "pause", "retract", "pause", "extend")])
-def test_segments_that_afmformats_cannot_read(
-    tmp_path: Path, recording: instruments.Recording, styles: tuple[str, ...]
-) -> None:
-    """The reason is told, and what to do instead."""
-    path = tmp_path / "map.jpk-force-map"
-    instruments.jpk(path, recording, recording, styles=styles)
-    with pytest.raises(pl.StorageError, match=rf"segments: {len(styles)}.*export each .* table"):
-        read(path)
-
-
-def test_a_damaged_curve_of_an_archive(tmp_path: Path, recording: instruments.Recording) -> None:
+def test_a_damaged_curve_of_an_archive(tmp_path: Path) -> None:
     """It says so by its name, and the others are read."""
     path, given = tmp_path / "a.zip", Calibration(spring_constant=SPRING)
-    instruments.archive(path, [recording, recording])
+    instruments.archive(path, [RECORDING, RECORDING])
     with zipfile.ZipFile(path) as archive:
         contents = {name: archive.read(name) for name in archive.namelist()}
     first, last = (name for name, text in contents.items() if text.startswith(b"Force-Dist"))
@@ -237,25 +221,21 @@ def test_a_damaged_curve_of_an_archive(tmp_path: Path, recording: instruments.Re
         damaged[1]()
 
 
-def test_a_file_that_is_replaced_is_read_again(
-    tmp_path: Path, recording: instruments.Recording
-) -> None:
+def test_a_file_that_is_replaced_is_read_again(tmp_path: Path) -> None:
     """An archive of JPK stays open in afmformats, which would go on with the old one."""
     path = tmp_path / "curve.jpk-force"
     for factor in (1.0, 2.0):
         new = tmp_path / "new"
-        instruments.jpk(new, replace(recording, force=factor * recording.force))
+        instruments.jpk(new, replace(RECORDING, force=factor * RECORDING.force))
         new.replace(path)
         assert only(path).force == pytest.approx(factor * SEEN[1], abs=1e-6 * np.ptp(SEEN[1]))
 
 
 @pytest.mark.parametrize("constant", [np.nan, 0.0, -0.05])
-def test_a_spring_constant_that_is_none_is_replaced(
-    tmp_path: Path, recording: instruments.Recording, constant: float
-) -> None:
+def test_a_spring_constant_that_is_none_is_replaced(tmp_path: Path, constant: float) -> None:
     """Exports of curves that were not calibrated hold such numbers: asked for, then read."""
     path = tmp_path / "export.h5"
-    instruments.hdf5(path, recording)
+    instruments.hdf5(path, RECORDING)
     with h5py.File(path, "a") as file:
         file["0"].attrs["spring constant"] = constant
     with pytest.raises(pl.ConfigError, match="missing: spring_constant"):
@@ -263,24 +243,14 @@ def test_a_spring_constant_that_is_none_is_replaced(
     assert is_curve(only(path, GIVEN.model_copy(update={"sensitivity": None})), *SEEN)
 
 
-def test_damaged_file(tmp_path: Path, recording: instruments.Recording) -> None:
-    """A file that was cut off is said to be unreadable."""
-    path = tmp_path / "curve.jpk-force"
-    instruments.jpk(path, recording)
-    path.write_bytes(path.read_bytes()[:2000])
-    with pytest.raises(pl.StorageError, match="afmformats cannot read it"):
-        read(path)
-
-
 @pytest.mark.parametrize("name", ["curve.jpk-force", "export.h5"])
 def test_without_the_extra(
     tmp_path: Path,
-    recording: instruments.Recording,
     monkeypatch: pytest.MonkeyPatch,
     name: str,
 ) -> None:
     """Where afmformats is not installed, the message says how to get it."""
-    instruments.WRITERS[name](tmp_path / name, recording)
+    instruments.WRITERS[name](tmp_path / name, RECORDING)
     monkeypatch.setitem(sys.modules, "afmformats", None)
     with pytest.raises(pl.PellicleError, match=r"pip install 'pellicle\[afm\]'"):
         only(tmp_path / name)
@@ -337,34 +307,61 @@ READERS: dict[str, tuple[str, Any]] = {
 
 
 @pytest.mark.parametrize("name", READERS)
-def test_readers_keep_their_contract(
-    tmp_path: Path, recording: instruments.Recording, name: str
-) -> None:
+def test_readers_keep_their_contract(tmp_path: Path, name: str) -> None:
     """Files are told from others, and cut or damaged ones are errors in words."""
-    instruments.WRITERS[name](tmp_path / name, recording)
+    instruments.WRITERS[name](tmp_path / name, RECORDING)
     type_, given = READERS[name]
     reader = pl.registry().make(Reader, {"type": type_})
     check_reader(reader, tmp_path / name, calibration=given)
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"cut": 9}, "it ends within channel DataSet-1:7"),
-        ({"bits": "64"}, "has the layout Binary, Signed, Intel, 64 bits"),
-        ({"bits": "x"}, "invalid literal"),
-    ],
-)
-def test_spectrum_that_cannot_be_read(
-    tmp_path: Path, recording: instruments.Recording, options: dict[str, Any], message: str
+def _cut_jpk(path: Path) -> None:
+    instruments.jpk(path, RECORDING)
+    path.write_bytes(path.read_bytes()[:2000])
+
+
+FIVE = "extend", "pause", "retract", "pause", "extend"
+SPECTRUM = "cannot be read as a spectrum .*"
+UNREADABLE: list[tuple[str, Callable[[Path], None], str]] = [
+    (
+        "a.nid",
+        lambda p: instruments.nid(p, RECORDING, cut=9),
+        f"{SPECTRUM}it ends within channel D",
+    ),
+    (
+        "a.nid",
+        lambda p: instruments.nid(p, RECORDING, bits="64"),
+        f"{SPECTRUM}has the layout Binary, Signed, Intel, 64 bits",
+    ),
+    ("a.nid", lambda p: instruments.nid(p, RECORDING, bits="x"), f"{SPECTRUM}invalid literal"),
+    # Force volumes and curves with a hold.
+    ("a.spm", lambda p: instruments.nanoscope(p, RECORDING, "FVOL"), "single curves are read"),
+    ("a.spm", lambda p: instruments.nanoscope(p, RECORDING, samples=7), "with a hold are not"),
+    (
+        "a.jpk-force-map",
+        lambda p: instruments.jpk(p, RECORDING, RECORDING, styles=FIVE),
+        "segments: 5.*export each .* table",
+    ),
+    (
+        "a.jpk-force-map",
+        lambda p: instruments.jpk(p, RECORDING, RECORDING, styles=FIVE[:1]),
+        "segments: 1.*export each .* table",
+    ),
+    ("a.jpk-force", _cut_jpk, "afmformats cannot read it"),
+]
+
+
+@pytest.mark.parametrize(("name", "write", "message"), UNREADABLE)
+def test_files_that_cannot_be_read(
+    tmp_path: Path, name: str, write: Callable[[Path], None], message: str
 ) -> None:
-    """What is wrong with a file of Nanosurf is said."""
-    instruments.nid(tmp_path / "a.nid", recording, **options)
-    with pytest.raises(pl.StorageError, match=f"cannot be read as a spectrum .*{message}"):
-        only(tmp_path / "a.nid")
+    """What is wrong with them is said, or what to do instead."""
+    write(tmp_path / name)
+    with pytest.raises(pl.StorageError, match=message):
+        only(tmp_path / name)
 
 
-def test_absurd_numbers_take_no_memory(tmp_path: Path, recording: instruments.Recording) -> None:
+def test_absurd_numbers_take_no_memory(tmp_path: Path) -> None:
     """Sizes in a header are compared with the file before anything is read."""
     for name, old, new in (
         ("a.nid", b"Points=300", b"Points=300000000000"),
@@ -373,7 +370,7 @@ def test_absurd_numbers_take_no_memory(tmp_path: Path, recording: instruments.Re
         ("a.000", b"Data length: 2400", b"Data length: 24000000000"),
     ):
         write = instruments.nid if name == "a.nid" else instruments.nanoscope
-        write(tmp_path / name, recording)
+        write(tmp_path / name, RECORDING)
         content = (tmp_path / name).read_bytes()
         assert old in content
         (tmp_path / name).write_bytes(content.replace(old, new))
@@ -381,23 +378,10 @@ def test_absurd_numbers_take_no_memory(tmp_path: Path, recording: instruments.Re
             only(tmp_path / name)
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [({"context": "FVOL"}, "single curves are read"), ({"samples": 7}, "with a hold are not")],
-)
-def test_nanoscope_that_is_not_read(
-    tmp_path: Path, recording: instruments.Recording, options: dict[str, Any], message: str
-) -> None:
-    """Force volumes and curves with a hold are refused, with what to do instead."""
-    instruments.nanoscope(tmp_path / "a.spm", recording, **options)
-    with pytest.raises(pl.StorageError, match=message):
-        only(tmp_path / "a.spm")
-
-
-def test_unmeasured_rows_and_units(tmp_path: Path, recording: instruments.Recording) -> None:
+def test_unmeasured_rows_and_units(tmp_path: Path) -> None:
     """The least integer is no row; a sensitivity in another unit than nm/V is refused."""
     path = tmp_path / "a.000"
-    instruments.nanoscope(path, recording)
+    instruments.nanoscope(path, RECORDING)
     content = bytearray(path.read_bytes())
     content[4096 + 4 * 299 : 4096 + 4 * 300] = np.array([-(2**31)], "<i4").tobytes()
     path.write_bytes(content)
@@ -408,9 +392,7 @@ def test_unmeasured_rows_and_units(tmp_path: Path, recording: instruments.Record
         only(path)
 
 
-def test_a_height_that_was_not_measured_is_told(
-    tmp_path: Path, recording: instruments.Recording
-) -> None:
+def test_a_height_that_was_not_measured_is_told(tmp_path: Path) -> None:
     """Piezos without a closed loop miss it by far; with the height of a sensor nothing is told."""
     changes = {
         "curve.000": (b'"Height Sensor"', b'"Weight Sensor"'),
@@ -418,7 +400,7 @@ def test_a_height_that_was_not_measured_is_told(
     }
     for name in ("curve.000", "spectrum.nid", "export.h5"):
         path = tmp_path / name
-        instruments.WRITERS[name](path, recording)
+        instruments.WRITERS[name](path, RECORDING)
         (measured,) = (reader() for reader in read(path).values())
         if name in changes:
             path.write_bytes(path.read_bytes().replace(*changes[name]))
@@ -435,9 +417,9 @@ def test_a_height_that_was_not_measured_is_told(
     assert driven.messages == ()
 
 
-def test_files_of_images_are_passed_over(tmp_path: Path, recording: instruments.Recording) -> None:
+def test_files_of_images_are_passed_over(tmp_path: Path) -> None:
     """In a folder they are no curves; alone they are refused. A table may have their suffix."""
-    instruments.nanoscope(tmp_path / "a.000", recording)
+    instruments.nanoscope(tmp_path / "a.000", RECORDING)
     (tmp_path / "b.000").write_bytes(b"\\*File list\r\n" + bytes(99))
     (tmp_path / "c.nid").write_bytes(b"[DataSet]\r\n#!" + bytes(99))
     assert [*pl.read_curves(tmp_path)] == [str(tmp_path / "a.000")]

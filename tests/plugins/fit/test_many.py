@@ -231,7 +231,6 @@ class Stiffer:
         self.factor = factor
 
     def force_curve(self, depth: Array, length: float) -> pl.ForceCurve:
-        """Return the multiple."""
         curve = Paraboloid(radius=RADIUS).force_curve(depth, length)
         return pl.ForceCurve(*(self.factor * values for values in curve))
 
@@ -266,7 +265,6 @@ class Keeps(Executor):
         tasks: Sequence[AnyTask],
         report: Report[AnyTask],
     ) -> Iterator[tuple[AnyTask, Outcome | Exception]]:
-        """Yield the tasks in another order."""
         for task in reversed(tasks):
             assert task.memory > 0
             copy, moved = pickle.loads(pickle.dumps((work, task)))

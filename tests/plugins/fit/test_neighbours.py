@@ -10,8 +10,8 @@ import pytest
 import xarray as xr
 
 import pellicle as pl
-from pellicle.runs.lock import locked
-from pellicle_fit.alike import kind_of, neighbours, order_of
+from pellicle.runs.lock import lock_files
+from pellicle_fit.representatives import kind_of, neighbours, order_of
 from pellicle_fit.selection.neighbour import RULED_OUT, Neighbour
 from pellicle_plugins.indenters.of_revolution import Paraboloid
 from tests.command import Cli, run_parts
@@ -178,7 +178,7 @@ def test_curves_of_another_process_are_left_to_it(cli: Cli, tmp_path: Path) -> N
     cli("day/00.csv", "day/02.csv", *OPTIONS, "-o", "out")
     (last, *_) = kept.glob("*.json")
     last.unlink()
-    with locked(kept, last.stem):
+    with lock_files(kept, last.stem):
         held = cli("day", *OPTIONS, "-o", "out", "--part", "any")
     assert "another process fits it" in held.stderr
     assert "curves left: 1" in held.stdout

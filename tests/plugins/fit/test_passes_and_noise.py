@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle_fit.estimation.long_memory import differenced, exponent_of
+from pellicle_fit.estimation.long_memory import exponent_of, fractional_differences
 from pellicle_fit.estimation.noise import Flaw
 from pellicle_fit.files.choice import read
 from pellicle_fit.files.cleaning import clean
@@ -254,17 +254,17 @@ def test_a_relaxing_solid_sees_the_way_without_it() -> None:
 def test_differences_of_order_one_and_their_composition() -> None:
     """(1 − B)^1 takes differences of neighbours, and two powers follow each other."""
     values = np.random.default_rng(1).standard_normal((50, 2))
-    assert differenced(values, 1.0)[1:] == pytest.approx(np.diff(values, axis=0))
-    assert differenced(values, 0.0) == pytest.approx(values)
-    twice = differenced(differenced(values, 0.3), 0.7)
-    assert twice == pytest.approx(differenced(values, 1.0))
+    assert fractional_differences(values, 1.0)[1:] == pytest.approx(np.diff(values, axis=0))
+    assert fractional_differences(values, 0.0) == pytest.approx(values)
+    twice = fractional_differences(fractional_differences(values, 0.3), 0.7)
+    assert twice == pytest.approx(fractional_differences(values, 1.0))
 
 
 @pytest.mark.parametrize("exponent", [0.2, 0.5, 0.8])
 def test_exponent_of_fractional_noise(exponent: float) -> None:
     """The exponent of noise is recovered; its standard error is 0.78 / √n, here 0.008."""
     random = np.random.default_rng(2)
-    noise = differenced(random.standard_normal((10_000, 1)), -exponent)[:, 0]
+    noise = fractional_differences(random.standard_normal((10_000, 1)), -exponent)[:, 0]
     assert exponent_of(noise) == pytest.approx(exponent, abs=0.03)
 
 

@@ -70,7 +70,7 @@ def test_what_is_said(measured: dict[str, tuple[Array, Array]]) -> None:
     assert small["contact_point"]["unit"] == "m"
     assert [entry["indenter"]["radius"] for entry in (small, large)] == list(RADII)
     # Without times all curves have one speed, not one duration.
-    fast, slow = (curve.velocity.mean() for curve in fit.answer.selected.whole)
+    fast, slow = (curve.velocity.mean() for curve in fit.answer.selected.all_rows)
     assert fast == pytest.approx(slow, rel=0.01)
 
 

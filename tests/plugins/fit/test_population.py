@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import pellicle as pl
-from pellicle.batch import locked
+from pellicle.batch import lock_files
 from pellicle.errors import StorageError
 from pellicle_fit import many
 from pellicle_fit.estimation.coordinates import MODULUS
@@ -37,8 +37,8 @@ from pellicle_fit.population.row import Row
 from pellicle_fit.report import tables
 from pellicle_fit.report.contact_sheet import sheets
 from pellicle_fit.report.population import distributions
-from pellicle_fit.sealed import read_sealed, write_sealed
-from pellicle_fit.words.names import quoted, unit_of
+from pellicle_fit.sealed_json import read_sealed, write_sealed
+from pellicle_fit.words.names import quote_estimate, unit_of
 from pellicle_fit.words.population import sentences_of_population
 from tests.command import Cli, call
 from tests.plugins.fit.test_many import BEAD, HERTZ, OPTIONS, curve, save
@@ -235,7 +235,7 @@ def test_a_value_is_quoted_where_its_interval_determines_it() -> None:
         ((None, 9e-3), False, "< 9"),
         ((None, None), False, "not determined"),
     ):
-        assert quoted(Estimate(5e-3, low, high, "N/m", held), unit, 3) == text
+        assert quote_estimate(Estimate(5e-3, low, high, "N/m", held), unit, 3) == text
 
 
 def test_nothing_is_left() -> None:
@@ -390,7 +390,7 @@ def test_curves_do_not_pile_up(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_two_at_once(cli: Cli, tmp_path: Path) -> None:
     """A second process in the folder is refused in words, and nothing of the first is touched."""
     save(tmp_path / "day" / "a.csv", *curve(1))
-    with locked(tmp_path / "out", "fits"):
+    with lock_files(tmp_path / "out", "fits"):
         result = cli("day", *FIXED, "-o", "out", code=2)
     assert "is locked by another process" in result.stderr
     assert not Path("out/fits.csv").exists()

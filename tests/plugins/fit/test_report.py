@@ -20,13 +20,13 @@ from pellicle_fit.population.fits import ManyFits
 from pellicle_fit.population.judgement import judge
 from pellicle_fit.record import Record
 from pellicle_fit.report import tables
-from pellicle_fit.report.contact_sheet import chosen, grid, sheets
+from pellicle_fit.report.contact_sheet import choose_curves, grid, sheets
 from pellicle_fit.report.figures import charts, panels, save_figure
 from pellicle_fit.report.likelihood_map import likelihood_map
 from pellicle_fit.report.page import save_report
 from pellicle_fit.report.paper_table import save_tables
 from pellicle_fit.report.population import bars
-from pellicle_fit.words.story import story, told
+from pellicle_fit.words.story import story, story_lines
 from tests.command import Cli, call
 from tests.pictures import drawn_width
 from tests.plugins.fit.conftest import ends_of
@@ -66,7 +66,7 @@ def test_page(single: pl.Fit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
 def test_json_holds_all_that_is_told(single: pl.Fit) -> None:
     """What a file keeps of a fit gives the sentences and tables of the fit."""
     kept = Record(json.loads(single.to_json()))
-    assert told(kept) == told(single)
+    assert story_lines(kept) == story_lines(single)
     for table in (tables.estimates, tables.explanations, tables.curves, tables.correlations):
         assert table(kept).records == table(single).records
     assert kept.estimates() == single.estimates()
@@ -139,19 +139,19 @@ def test_sheet_of_very_many_curves() -> None:
     rows = [row(str(n)) for n in range(300)]
     for number, one in enumerate(rows):
         one.accepted = number % 4 > 0
-    assert chosen(rows, 11) == (rows, "")
-    some, words = chosen(rows, 2)
+    assert choose_curves(rows, 11) == (rows, "")
+    some, words = choose_curves(rows, 2)
     assert [int(one.name) for one in some] == sorted({int(one.name) for one in some})
     assert sum(not one.accepted for one in some) == len(some) / 2 == 28
     assert words.startswith("; 56 of 300 curves: 28 of 75 that are not accepted")
-    few, _ = chosen(rows[:160:4] + rows[1:101:4], 2)
+    few, _ = choose_curves(rows[:160:4] + rows[1:101:4], 2)
     assert sum(one.accepted for one in few) == 25
     (caption, *_) = (text for text in panels(ManyFits(rows)) if "page 1 of 6" in text)
     assert caption.startswith("Some curves with their fits, page 1 of 6; 168 of 300 curves")
 
 
 def test_long_lists_of_curves_are_shown_on_demand(tmp_path: Path) -> None:
-    """A page begins with what was found, not with hundreds of reasons."""
+    """A page begins with what was found, not with hundreds of reasons or of curves."""
     for count in (30, 31):
         rows = [row("a"), *(row(f"b{n}", None) for n in range(count))]
         for number, one in enumerate(rows[1:]):
@@ -161,10 +161,6 @@ def test_long_lists_of_curves_are_shown_on_demand(tmp_path: Path) -> None:
         assert f"b{count - 1}: failed: no contact: {count - 1} nN" in page
         folded = f"<summary>{count} of {count + 1} curves could not be fitted.</summary>"
         assert (folded in page) == (count == 31)
-
-
-def test_long_tables_of_curves_are_shown_on_demand() -> None:
-    """A page of many curves begins with their table folded."""
     assert not tables.rows([row("a")] * 200).folded
     assert tables.rows([row("a")] * 201).folded
 

@@ -21,7 +21,7 @@ from pellicle_fit.problem import problem
 from pellicle_fit.selection.recipe import answer
 from pellicle_fit.simulated import simulation
 from pellicle_fit.simulated.equivalent import EquivalentBody
-from pellicle_fit.simulated.interpolated import SimulatedCurve, tensed
+from pellicle_fit.simulated.interpolated import SimulatedCurve, tensed_depths
 from pellicle_fit.simulated.simulation import plan, simulated_curve
 from pellicle_fit.simulated.solid import solid
 from pellicle_plugins.indenters.of_revolution import Sphere
@@ -47,7 +47,9 @@ def exact_nodes() -> SimulatedCurve:
     forces = np.array(
         [
             [sphere.force_curve(np.array([depth]), s).force[0] for s in lengths]
-            for depth, lengths in zip(tensed(depths), SimulatedCurve(body).nodes[0], strict=True)
+            for depth, lengths in zip(
+                tensed_depths(depths), SimulatedCurve(body).nodes[0], strict=True
+            )
         ]
     )
     return SimulatedCurve(body, forces, 0.01, half_space=False)
@@ -126,7 +128,6 @@ def test_a_stranger_s_kernel_needs_no_poissons_ratio(monkeypatch: pytest.MonkeyP
         tension: Annotated[float, Quantity("N/m", at_least=0)]
 
         def compliance(self, q: Array) -> Array:
-            """Return G(q) [m/Pa]."""
             softer = 2 / (self.reduced_modulus * q) * (1 + 1 / (1 + 1 / (1e-6 * q)))
             return np.asarray(1 / (1 / softer + self.tension * q**2))
 
@@ -276,11 +277,9 @@ def liar(change: Callable[..., Any]) -> Any:
         type: Literal["liar"] = "liar"  # type: ignore[assignment]
 
         def force_curve(self, depth: Any, length: float) -> Any:
-            """Return the force curve, changed."""
             return change(super().force_curve(depth, length), depth)
 
         def layer_force_curve(self, depth: Any, *solid: float) -> Any:
-            """Return the force curve on a layer, changed."""
             return change(super().layer_force_curve(depth, *solid), depth)
 
     return Bead(radius=1e-5)

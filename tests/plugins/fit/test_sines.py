@@ -417,7 +417,7 @@ def test_a_pair_explains_a_hold_no_worse_than_its_part(seed: int) -> None:
     alone, pair = fits[frozenset({"power_law"})], fits[frozenset({"power_law", "tension"})]
     # What leads nowhere is given up within 4 in AIC.
     assert pair.chi_squared <= alone.chi_squared + 4
-    assert pair.polished().chi_squared <= alone.chi_squared + 0.1
+    assert pair.polish().chi_squared <= alone.chi_squared + 0.1
     assert not found.tension_needed
 
 

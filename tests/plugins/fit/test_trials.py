@@ -90,7 +90,6 @@ class OfNumbers(Soft):
     type: Literal["of_numbers"] = "of_numbers"  # type: ignore[assignment]
 
     def give(self, force: Array) -> Array:
-        """Return cF [m]."""
         return float(self.soft) * force
 
 
@@ -100,7 +99,6 @@ class Mixed(Soft):
     type: Literal["mixed"] = "mixed"  # type: ignore[assignment]
 
     def give(self, force: Array) -> Array:
-        """Return cF [m]."""
         return float(np.ravel(self.soft)[0]) * force
 
 
@@ -116,11 +114,9 @@ class Trials(NamedTuple):
     terms: Array
 
     def of(self, rows: NDArray[Any]) -> Trials:
-        """Return some."""
         return Trials(self.terms[rows])
 
     def put(self, rows: NDArray[Any], others: Trials) -> None:
-        """Put others in their places."""
         self.terms[rows] = others.terms
 
 
@@ -136,13 +132,11 @@ class Valley:
         return Trials(np.where(x[:, None] < -2.5, np.nan, terms))
 
     def derivatives(self, at: Array, trials: Trials) -> Array:
-        """Return derivatives, of shape (k, 2, 2)."""
         x = at[:, 0]
         rows = [[-20 * x, np.full_like(x, -1.0)], [np.full_like(x, 10.0), 0 * x]]
         return np.moveaxis(np.array(rows), 2, 0)
 
     def squares(self, terms: Array) -> tuple[float, ...]:
-        """Return the sum of squares."""
         return (float(terms @ terms),)
 
 
@@ -196,11 +190,11 @@ def test_end_where_chi_squared_jumps() -> None:
 
     way = _Way(cast("Any", objective), minimum(0.0), np.ones((4, 1)), 0, 1, 4.0)
     here = way.distance
-    way.reached(minimum(100.0))
+    way.advance(minimum(100.0))
     assert way.distance < here
     # Searches of two starts disagree about one point.
     way.distance = here
-    way.reached(minimum(0.0))
-    assert way.ended
+    way.advance(minimum(0.0))
+    assert way.is_done
     assert way.kind is End.CLOSED
     assert way.end == pytest.approx(here)

@@ -10,7 +10,7 @@ from pellicle.arrays import Array
 from pellicle.components import Branch, KernelOf
 from pellicle.surface import mean_compliance, operator_of
 from pellicle.surface.from_kernel import closed_form_of
-from tests.tables_of_runs import layer, pressing
+from tests.tables_of_runs import half_space, layer, pressing, relaxing
 
 SKIN: dict[str, Any] = {"type": "tensed_membrane", "reduced_modulus": 1e4, "tension": 0.04}
 LAYER: dict[str, Any] = layer("bonded_layer", 1e-4, 0.4, youngs_modulus=5e3)
@@ -95,20 +95,11 @@ def test_what_bodies_state_of_themselves() -> None:
     assert pair(thin, SKIN).depth_to_base() == 1e-4
 
 
-SOLID = {"type": "half_space", "reduced_modulus": 1e4}
-
-
-def relaxing(solid: Any = SOLID, fraction: float = 0.5) -> dict[str, Any]:
-    """Return a solid of which a part relaxes in a second."""
-    branch = {"fraction": fraction, "time": 1.0}
-    return {"type": "viscoelastic", "solid": solid, "relaxation": [branch]}
-
-
 def test_two_bodies_that_relax_alike_are_one() -> None:
     """Of the sum of their compliances, whatever the path."""
     loading: Any = {"depth": ["5 um", "10 um", "10 um"], "time": [0.0, 0.5, 3.0]}
-    both = pair(relaxing(), relaxing(SOLID | {"reduced_modulus": 3e4}))
-    one = relaxing(SOLID | {"reduced_modulus": 7.5e3})
+    first, second, one = (relaxing(half_space(e), 0.5, 1.0) for e in (1e4, 3e4, 7.5e3))
+    both = pair(first, second)
     expected = force(one, **loading)["force"].item()
     assert force(both, **loading)["force"].item() == pytest.approx(expected, rel=1e-8)
 
@@ -140,19 +131,15 @@ class Stated(pl.Isotropic):
         return 1e-6 / (1 + 5e-4 * q)
 
     def mean_compliance(self) -> float:
-        """Return its limit for long waves."""
         return 1e-6
 
     def branches(self) -> tuple[Branch, ...]:
-        """Return one branch."""
         return (Branch(0.5, 2.0),)
 
     def time_span(self) -> tuple[float, float]:
-        """Return a span around its time."""
         return 0.1, 30.0
 
     def depth_to_base(self) -> float:
-        """Return 3 mm."""
         return 3e-3
 
 
@@ -164,7 +151,6 @@ class Warm(KernelOf):
     body: pl.Kernel
 
     def symbol(self, qx: Array, qy: Array) -> Array:
-        """Return twice that of the body."""
         return 2 * self.body.symbol(qx, qy)
 
 

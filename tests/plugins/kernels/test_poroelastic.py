@@ -10,7 +10,7 @@ from scipy.integrate import quad
 
 import pellicle as pl
 from pellicle.arrays import Array
-from pellicle.components import Branch, OfWave, relax_alike
+from pellicle.components import Branch, OfWave, have_equal_branches
 from pellicle.components.rules import Case
 from pellicle.components.rules.kernels import branches_have_shares_and_times
 from pellicle.contact.time_step import permanent_share
@@ -174,7 +174,7 @@ def test_two_bodies_that_drain_alike() -> None:
     """The pair has the branches of both, and a pair of equals is a body half as stiff."""
     one = gel().model_dump(exclude_none=True)
     both = pl.kernel("pair", first=one, second=one)
-    assert relax_alike(both.branches(), gel().branches())
+    assert have_equal_branches(both.branches(), gel().branches())
     with pytest.raises(pl.ConfigError, match="relax differently"):
         pl.kernel("pair", first=one, second={**one, "diffusivity": 0.6})
 

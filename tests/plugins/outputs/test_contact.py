@@ -56,8 +56,8 @@ def column(table: list[dict[str, str]], name: str) -> np.ndarray:
     return np.array([float(row[name]) for row in table])
 
 
-def test_patches_carry_the_force(left: Left) -> None:
-    """Areas and forces of the patches of each step sum to its own; the largest comes first."""
+def test_patches_and_pressures_carry_the_force(left: Left) -> None:
+    """Areas and forces of patches sum to those of their step; densities integrate to 1 and F."""
     folder, result = left
     for step in range(2):
         data = result.dataset.isel(step=step)
@@ -69,20 +69,12 @@ def test_patches_carry_the_force(left: Left) -> None:
         force = column(table, "force [N]")
         assert force.sum() == pytest.approx(data["force"].item(), rel=1e-12)
         assert (force > 0).all()
-
-
-def test_pressure_distribution_integrates_to_the_force(left: Left) -> None:
-    """So it does, for each step, and the shares of all bins are 1."""
-    folder, result = left
-    for step in range(2):
-        data = result.dataset.isel(step=step)
-        table = rows(
-            folder / "rough-distributions.csv", curve=f"step = {step + 1}", series="pressure"
-        )
+        curve = {"curve": f"step = {step + 1}", "series": "pressure"}
+        table = rows(folder / "rough-distributions.csv", **curve)
         share = column(table, "density") * (column(table, "upper") - column(table, "lower"))
         assert share.sum() == pytest.approx(1, rel=1e-12)
-        force = data["contact_area"].item() * (share @ column(table, "mean"))
-        assert force == pytest.approx(data["force"].item(), rel=1e-12)
+        mean = data["contact_area"].item() * (share @ column(table, "mean"))
+        assert mean == pytest.approx(data["force"].item(), rel=1e-12)
 
 
 def test_spectrum_holds_the_roughness(left: Left) -> None:
@@ -310,7 +302,6 @@ class Failing(pl.Output):
     type: Literal["failing"] = "failing"
 
     def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
-        """Refuse."""
         raise pl.ConfigError("is not what it seemed", "type")
 
 

@@ -51,7 +51,6 @@ class Page(HTMLParser):
         self.feed(path.read_text(encoding="utf-8"))
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Begin a table, a row or a cell where one begins."""
         self.tags.append((tag, dict(attrs)))
         self._open.append(tag)
         if tag == "summary":
@@ -63,12 +62,10 @@ class Page(HTMLParser):
         self.texts.setdefault(tag, []).append("")
 
     def handle_endtag(self, tag: str) -> None:
-        """Leave a tag."""
         while self._open.pop() != tag:
             pass
 
     def handle_data(self, data: str) -> None:
-        """Put a text where it belongs."""
         if {"summary", "th", "td"} & set(self._open):
             self._rows[-1][-1][-1] += data
         if self._open:
@@ -267,7 +264,6 @@ class Lost(pl.Solver):
     type: str = "lost"
 
     def solve(self, problem: pl.Problem, start: Any, monitor: Any) -> pl.Solution:
-        """Return NaN."""
         return pl.Solution(pl.State.of_pressure(np.full(problem.grid.shape, np.nan)), 1)
 
 

@@ -114,11 +114,9 @@ class Recording(pl.Output):
     seen: ClassVar[list[tuple[int, str]]] = []
 
     def step(self, record: xr.Dataset, stem: Path) -> None:
-        """Keep the number of the step."""
         self.seen.append((record["step"].item(), stem.name))
 
     def write(self, runs: pl.Runs, stem: Path) -> tuple[Path, ...]:
-        """Write nothing."""
         return ()
 
 

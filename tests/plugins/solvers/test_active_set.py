@@ -44,7 +44,6 @@ class Graded(Isotropic):
     type: Literal["graded"] = "graded"
 
     def compliance(self, q: Array) -> Array:
-        """Return q^−½."""
         return q**-0.5
 
 
@@ -355,24 +354,23 @@ def waves(number: int, power: float) -> Shape:
     return profile
 
 
-@pytest.mark.parametrize("points", [256, 1024, 4096])
-def test_rough_line_contact(points: int) -> None:
-    """On a line of cells as on a plane: 56 … 106 where E leaves off the contact at rest."""
-    line = waves(60, 1.3)
-    for s, force in ((0.0, 1e-2), (0.02, 1.6e-2), (0.2, 7e-2)):
-        size = (1.0, 1 / points)
-        problem = make((points, 1), "periodic", skin(s), line, "force", force / points, size)
-        assert active_set(problem).applications <= 30  # 15 … 23
+ROUGH_LINE, CRESTS = waves(60, 1.3), waves(6, 2)
+LINES: list[tuple[Kernel, Shape, float, int]] = [
+    # 15 … 23, and 56 … 106 where E leaves off the contact at rest.
+    *((skin(s), ROUGH_LINE, f, 30) for s, f in ((0.0, 1e-2), (0.02, 1.6e-2), (0.2, 7e-2))),
+    # Touched at the crests and all over: 3 … 5.
+    *((plate(b), CRESTS, f, 6) for b, f in ((1e-5, 1e-3), (1e-3, 1e-3), (1e-3, 3.0))),
+]
 
 
-@pytest.mark.parametrize("across", [1e-6, 1.0, 1e3])
-def test_line_contact_of_a_plate(across: float) -> None:
-    """On a line of cells, whatever its size across: waves touched at their crests and all over."""
-    for bending, force in ((1e-5, 1e-3), (1e-3, 1e-3), (1e-3, 3.0)):
+@pytest.mark.parametrize(("kernel", "line", "force", "most"), LINES)
+def test_line_contact(kernel: Kernel, line: Shape, force: float, most: int) -> None:
+    """On a line of cells as on a plane, for a plate whatever its size across."""
+    grids = [(n, 1 / n) for n in (256, 1024, 4096)]
+    for points, across in grids if line is ROUGH_LINE else [(256, y) for y in (1e-6, 1.0, 1e3)]:
         size = (1.0, across)
-        skin = plate(bending)
-        problem = make((256, 1), "periodic", skin, waves(6, 2), "force", force * across, size)
-        assert active_set(problem).applications <= 6  # 3 … 5
+        problem = make((points, 1), "periodic", kernel, line, "force", force * across, size)
+        assert active_set(problem).applications <= most
 
 
 @pytest.mark.parametrize("seed", [13, 30, 56])

@@ -11,7 +11,7 @@ from scipy.special import i0, k0
 from pellicle import Grid
 from pellicle.arrays import Array
 from pellicle_plugins.solvers import adhesion, front
-from pellicle_plugins.solvers.anderson import Tried, extrapolated, is_convex
+from pellicle_plugins.solvers.anderson import RoundRecord, extrapolate_rounds, is_convex
 from pellicle_plugins.solvers.front import STIFFNESS, potential, shifted_contact
 from tests.adhesive_paths import JKR, half_space, solved, wavy
 
@@ -76,7 +76,7 @@ def test_a_shifted_disc_is_a_disc(shift: float) -> None:
     assert not moved[distance > 0.25 - shift + cell].any()
 
 
-def rounds(count: int, cells: int) -> tuple[list[Tried], Array]:
+def rounds(count: int, cells: int) -> tuple[list[RoundRecord], Array]:
     """Return rounds of a linear map to tractions, and the traction that misses nothing."""
     random = np.random.default_rng(4)
     root = random.standard_normal((cells, cells))
@@ -84,7 +84,7 @@ def rounds(count: int, cells: int) -> tuple[list[Tried], Array]:
     traction, found = np.zeros(cells), []
     for _ in range(count):
         missed = stiffness @ (solution - traction)
-        found.append(Tried(traction, missed, 3 * traction))
+        found.append(RoundRecord(traction, missed, 3 * traction))
         traction = traction + 0.2 * missed
     return found, solution
 
@@ -93,21 +93,21 @@ def test_linear_rounds_are_extrapolated_to_their_end() -> None:
     """As many rounds as cells, and one, tell all of a linear map, of the wall pressure too."""
     found, solution = rounds(5, 4)
     nothing = np.zeros(4, dtype=bool)
-    best = extrapolated(found, nothing)
+    best = extrapolate_rounds(found, nothing)
     assert best.traction == pytest.approx(solution, rel=1e-8)
     assert best.wall == pytest.approx(3 * solution, rel=1e-8)
     assert np.abs(best.missed).max() < 1e-8
     assert is_convex(found[0], found[1], nothing)
-    short = extrapolated(found[:3], nothing)
+    short = extrapolate_rounds(found[:3], nothing)
     assert np.linalg.norm(short.missed) < np.linalg.norm(found[2].missed)
 
 
 def test_an_extrapolation_to_a_saddle_is_dropped() -> None:
     """Where tractions are missed the more the further they follow, the last round stands."""
     one, unstable = np.ones(3), np.zeros(3, dtype=bool)
-    first = Tried(0 * one, 1 * one, one)
-    second = Tried(0.5 * one, 3 * one, one)
-    assert extrapolated([first, second], unstable) is second
+    first = RoundRecord(0 * one, 1 * one, one)
+    second = RoundRecord(0.5 * one, 3 * one, one)
+    assert extrapolate_rounds([first, second], unstable) is second
     assert not is_convex(first, second, unstable)
 
 

@@ -60,7 +60,6 @@ class Programme:
 
     @classmethod
     def of(cls, problem: Problem) -> Programme:
-        """Return the programme of ``problem``."""
         solid = np.flatnonzero(np.isfinite(problem.profile))
         unit = np.zeros(problem.grid.shape)
         columns = []
@@ -222,7 +221,6 @@ class Case:
     share: float = 1e-3
 
     def problem(self, length: float, modulus: float) -> Problem:
-        """Return the problem in SI."""
         kernel = pl.kernel(self.kernel, **kernels(length, modulus)[self.kernel])
 
         def heights(x: Array, y: Array) -> Array:

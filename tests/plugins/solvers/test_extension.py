@@ -227,9 +227,9 @@ def test_forces_on_the_contact_stay(kernel: str, boundary: Boundary) -> None:
     contact = island()
     forces = np.where(contact, np.random.default_rng(1).standard_normal(SHAPE), 0.0)
     on_contact = Preconditioner(problem(kernel, boundary).operator).on(contact)
-    np.testing.assert_array_equal(on_contact.transferred(forces), forces)
+    np.testing.assert_array_equal(on_contact.transfer(forces), forces)
     forces[0, 0] = 1.0
-    assert not on_contact.transferred(forces)[~contact].any()
+    assert not on_contact.transfer(forces)[~contact].any()
 
 
 def test_a_skin_that_bends_keeps_the_force() -> None:
@@ -238,7 +238,7 @@ def test_a_skin_that_bends_keeps_the_force() -> None:
     contact = random.uniform(size=SHAPE) < 0.3
     forces = random.uniform(-1e5, 2e5, size=SHAPE)
     operator = problem("bending", "periodic").operator
-    moved = Preconditioner(operator).on(contact).transferred(forces)
+    moved = Preconditioner(operator).on(contact).transfer(forces)
     assert moved.sum() == pytest.approx(forces.sum(), rel=1e-5)
 
 
@@ -269,7 +269,7 @@ def test_pressure_of_cells_that_leave(kernel: str, share: float) -> None:
     before = island()
     stay = before & (np.random.default_rng(5).uniform(size=SHAPE) < 0.7)
     pressure = exact(before)
-    moved = Preconditioner(operator).on(stay).transferred(pressure)
+    moved = Preconditioner(operator).on(stay).transfer(pressure)
     assert error(moved) < share * error(np.where(stay, pressure, 0.0))
 
 

@@ -11,7 +11,7 @@ from pellicle_plugins.solvers import active_set, window
 from pellicle_plugins.solvers.active_set import ActiveSet
 from pellicle_plugins.solvers.bending import relaxation
 from pellicle_plugins.solvers.bending.few_cells import solved_on_few_cells
-from pellicle_plugins.solvers.bending.relaxation import relaxed
+from pellicle_plugins.solvers.bending.relaxation import relax_locally
 from pellicle_plugins.solvers.contact_cg import InnerSolution
 from pellicle_plugins.solvers.preconditioner import CirculantStiffness, Preconditioner
 from tests.plugins.solvers.problems import BOUNDARIES, Boundary, Prescribed, make, solve
@@ -29,9 +29,9 @@ def plate(dx: float, dy: float, shape: tuple[int, int] = SHAPE) -> Problem:
 def settle(
     problem: Problem, contact: Mask, inner: InnerSolution, margin: float = MARGIN
 ) -> tuple[Mask, Array]:
-    """Return what `relaxed` makes of what an inner solve found on a contact."""
+    """Return what `relax_locally` makes of what an inner solve found on a contact."""
     on_contact = Preconditioner(problem.operator).on(contact)
-    return relaxed(problem, on_contact, inner, margin)
+    return relax_locally(problem, on_contact, inner, margin)
 
 
 def stiffness_matrix(problem: Problem) -> Array:

@@ -8,7 +8,7 @@ from . import interactions, kernels
 from .rule import Case as Case
 from .rule import Rule as Rule
 from .rule import first_violation as first_violation
-from .rule import required as required
+from .rule import requirement_of as requirement_of
 from .rule import rules_of
 
 CHEAP: dict[str, list[Rule]] = {

@@ -9,8 +9,8 @@ import numpy as np
 from pellicle.arrays import Array
 from pellicle.checks import read_only
 from pellicle.components.kernel import Kernel, branches_of
-from pellicle.contact.time_step import relax_alike
-from pellicle.errors import shown
+from pellicle.contact.time_step import have_equal_branches
+from pellicle.errors import excerpt
 from pellicle.grid import Grid
 from pellicle.surface.from_kernel import (
     checked_call,
@@ -145,7 +145,9 @@ def branches_have_shares_and_times(kernel: Kernel, case: Case) -> str:
             times = np.asarray(branch.time_at(read_only(q.copy())))
         wrong = times.shape not in ((), q.shape) or not (np.isfinite(times) & (times > 0)).all()
         if wrong:
-            return f"the time of a branch is {shown(times.tolist())} s at q = {shown(q.tolist())}"
+            return (
+                f"the time of a branch is {excerpt(times.tolist())} s at q = {excerpt(q.tolist())}"
+            )
     return ""
 
 
@@ -185,7 +187,7 @@ def scaled_stiffens_the_solid_alone(kernel: Kernel, case: Case) -> str:
 def without_skin_has_no_skin(kernel: Kernel, case: Case) -> str:
     """The solid without its skin relaxes as the kernel does, and has no skin to take off."""
     solid, waves = kernel.without_skin(), _vectors(kernel, _waves(case.grid))
-    if not relax_alike(branches_of(solid), branches_of(kernel)):
+    if not have_equal_branches(branches_of(solid), branches_of(kernel)):
         wrong = "relaxes as another kernel does" if branches_of(solid) else "does not relax"
         return f"without_skin() {wrong}"
     return difference(

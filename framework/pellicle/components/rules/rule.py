@@ -36,11 +36,11 @@ def first_violation(rules: Iterable[Rule], component: object, case: Case) -> str
         with errors_attributed_to(component), np.errstate(all="ignore"):
             violation = rule(component, case)
         if violation:
-            return f"{rule.__name__}: {violation}; required: {required(rule)}"
+            return f"{rule.__name__}: {violation}; required: {requirement_of(rule)}"
     return ""
 
 
-def required(rule: Callable[..., object]) -> str:
+def requirement_of(rule: Callable[..., object]) -> str:
     """Return what a rule requires."""
     return " ".join((inspect.getdoc(rule) or "").split())
 

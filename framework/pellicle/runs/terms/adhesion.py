@@ -15,7 +15,7 @@ from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import AdhesiveEquilibrium, equilibrium_of
 from pellicle.contact.load_step import Value, control_of
-from pellicle.contact.masks import labelled
+from pellicle.contact.masks import label_parts
 from pellicle.contact.problem import Depth
 from pellicle.contact.solution import State, Stop
 
@@ -51,14 +51,14 @@ def adhesion(run: Run, step: ContactStep, surroundings: AroundContact) -> Contac
     if not isinstance(equilibrium, AdhesiveEquilibrium) or interaction is None:
         return step
     if step.stop is Stop.PULLED_OFF:
-        step = step.having({}, [_pulled_off(run, step, surroundings)])
+        step = step.with_measures({}, [_pulled_off(run, step, surroundings)])
     touched = setting.state is not None and bool(setting.state.contact.any())
     as_whole = bool(equilibrium.contact.any()) != touched
     jumped = step.jumped or _asperity_jumped(setting.state, equilibrium)
     lost = _jump_energy(run, equilibrium, surroundings, is_certain=jumped, as_whole=as_whole)
     jumped = jumped or lost > 0
     limit = _force_limit(run, interaction, equilibrium, surroundings.monitor)
-    step = step.having({"jumped": jumped, "jump_energy": lost, **limit})
+    step = step.with_measures({"jumped": jumped, "jump_energy": lost, **limit})
     if not step.converged:
         return step
     caveats, cells = [], equilibrium.zone_width / run.grid.cell_size
@@ -67,7 +67,7 @@ def adhesion(run: Run, step: ContactStep, surroundings: AroundContact) -> Contac
     if jumped and not as_whole and equilibrium.contact.any():
         loss = "known" if lost > 0 else "unknown"
         caveats.append(Caveat(Status.JUMPED, {"lost": lost, "loss": loss}))
-    return step.having({}, caveats)
+    return step.with_measures({}, caveats)
 
 
 def _force_limit(
@@ -151,7 +151,7 @@ def _asperity_jumped(before: State | None, equilibrium: AdhesiveEquilibrium) -> 
         return False
     patches = before.pressure != 0, equilibrium.pressure != 0
     for mask, counterpart in (patches, patches[::-1]):
-        labels, number = labelled(mask, problem.grid.boundary, 4)
+        labels, number = label_parts(mask, problem.grid.boundary, 4)
         if np.unique(labels[mask & counterpart]).size < number:
             return True
     return False

@@ -12,7 +12,7 @@ from pellicle.arrays import Mask
 from pellicle.config.run import Run
 from pellicle.contact.caveats import Caveat, Status
 from pellicle.contact.equilibrium import AdhesiveEquilibrium, Equilibrium
-from pellicle.contact.masks import labelled
+from pellicle.contact.masks import label_parts
 from pellicle.grid import Boundary
 
 from . import SMALL_SLOPE, AroundContact, ContactStep
@@ -29,11 +29,11 @@ _CONSTANT: Final = 0.05
 def contact(run: Run, step: ContactStep, around: AroundContact) -> ContactStep:
     """Add why the step is not a solution, or else what its cells and the theory do not hold."""
     if not np.isfinite(step.equilibrium.force):
-        return step.having({}, [Caveat(Status.NOT_FINITE)])
-    step = step.having({}, _failures(run, step, around))
+        return step.with_measures({}, [Caveat(Status.NOT_FINITE)])
+    step = step.with_measures({}, _failures(run, step, around))
     if not step.converged:
         return step
-    return step.having({}, [*_coarse(run, step.equilibrium), *_steep(run, step.equilibrium)])
+    return step.with_measures({}, [*_coarse(run, step.equilibrium), *_steep(run, step.equilibrium)])
 
 
 def _failures(run: Run, step: ContactStep, around: AroundContact) -> Iterator[Caveat]:
@@ -88,7 +88,7 @@ def _has_no_end(reach: Mask, boundary: Boundary) -> bool:
                 return True
         elif reach.shape[axis] > 1 and reach.any(axis=1 - axis).all():
             twice = np.concatenate([reach, reach], axis)
-            if labelled(twice, boundary, 8)[1] < 2 * labelled(reach, boundary, 8)[1]:
+            if label_parts(twice, boundary, 8)[1] < 2 * label_parts(reach, boundary, 8)[1]:
                 return True
     return False
 

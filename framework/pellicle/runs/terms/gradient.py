@@ -20,7 +20,7 @@ from pellicle.components.calls import profile_of, target_of
 from pellicle.components.kernel import Kernel, instantaneous
 from pellicle.config.gradient import HEIGHTS
 from pellicle.config.run import Run
-from pellicle.contact.masks import dilated
+from pellicle.contact.masks import dilate
 from pellicle.errors import ConfigError
 from pellicle.runs.differences import differences
 from pellicle.schema.model import get, python_names, with_value
@@ -28,7 +28,7 @@ from pellicle.surface.from_kernel import operator_of
 from pellicle.surface.operators import weighted_sum
 
 from . import ContactStep, Surroundings
-from .requested import responding
+from .extra_measures import add_response
 
 _WAVES: Final = 24
 _WIDER: Final = 1.5
@@ -67,7 +67,7 @@ class Gradient:
 
         A search keeps the depth where it tells the force, and the force where it tells the depth.
         """
-        step = responding(run, step, surroundings)
+        step = add_response(run, step, surroundings)
         assert step.response
         (response, k), equilibrium = step.response, step.equilibrium
         control, cell = equilibrium.problem.control, run.grid.cell_area
@@ -91,7 +91,7 @@ class Gradient:
             )
             derivatives[f"force_by_{name}"] = force if known else np.nan * force
             derivatives[f"depth_by_{name}"] = depth if known else np.nan * depth
-        return step.having(
+        return step.with_measures(
             {name: float(value) for name, value in derivatives.items() if np.ndim(value) == 0},
             fields={name: value for name, value in derivatives.items() if np.ndim(value)},
         )
@@ -128,7 +128,7 @@ def _of_profile(run: Run, setting: Setting, path: str) -> Callable[[Array], Arra
     nodes, weights = _differences(run, path, heights, size)
     change = np.full(run.grid.shape, np.nan)
     change[finite] = sum(w * heights(v) for v, w in zip(nodes, weights, strict=True))
-    edge = finite & dilated(~finite, run.grid.boundary)
+    edge = finite & dilate(~finite, run.grid.boundary)
     if edge.any() and _moves_edge(profile, get(run, path), finite):
         change[edge] = np.nan
         if (edge & (setting.profile == setting.profile.max())).any():

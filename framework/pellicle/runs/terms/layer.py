@@ -18,6 +18,6 @@ def layer(run: Run, step: Step, around: Surroundings) -> Step:
     deepest = float(surface.displacement.max(where=pressed, initial=0.0))
     if not step.converged or not deepest > thickness:
         return step
-    return step.having(
+    return step.with_measures(
         {}, [Caveat(Status.THROUGH_LAYER, {"deepest": deepest, "thickness": thickness})]
     )

@@ -21,4 +21,4 @@ def relaxation(run: Run, step: Step, surroundings: Surroundings) -> Step:
     if run.interaction and run.branches and loading.durations[index] > 0:
         # The energy of a solid that has relaxed on its way does not follow from its surface.
         measures["energy"] = np.nan
-    return step.having(measures)
+    return step.with_measures(measures)

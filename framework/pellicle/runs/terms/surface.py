@@ -30,17 +30,17 @@ def surface(run: Run, step: AnyStep, around: Surroundings) -> AnyStep:
     """Add the numbers of the surface under a load, and what is beyond theory or cells."""
     displacement = step.equilibrium.displacement
     if not np.isfinite(displacement).all():
-        return step.having({}, [Caveat(Status.NOT_FINITE)])
+        return step.with_measures({}, [Caveat(Status.NOT_FINITE)])
     slope = steepest(displacement, np.ones(displacement.shape, dtype=bool), run.grid)
     measures: dict[str, Value] = dict(ridge(displacement, run.grid)._asdict())
     pressure = step.equilibrium.pressure
     if abs(float(pressure.sum())) <= _ROUNDING * float(np.abs(pressure).sum()):
         measures |= {"force": 0.0, "mean_pressure": 0.0}
     assert run.load is not None
-    if path := run.load.varied:
+    if path := run.load.varying_field:
         measures[path.variable.name] = path.values[len(around.path)]
     load = run.load.at(len(around.path))
-    return step.having(measures | {"surface_slope": slope}, _limits(run, load, slope))
+    return step.with_measures(measures | {"surface_slope": slope}, _limits(run, load, slope))
 
 
 def _limits(run: Run, load: Load, slope: float) -> Iterator[Caveat]:

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from pellicle.arrays import Array, Mask
-from pellicle.contact import Problem, dilated, with_force
+from pellicle.contact import Problem, dilate, with_force
 
 # Cells in contact up to which this takes less time than local relaxation, and cells that may join.
 MOST_CELLS: Final = 160
@@ -40,7 +40,7 @@ def solved_on_few_cells(
     pressed = np.count_nonzero(contact & (trial > 0))
     if not pressed or 2 * pressed > trial.size:
         return None
-    may_join = (dilated(contact, cells=_RINGS) | (gap < -margin)) & np.isfinite(problem.profile)
+    may_join = (dilate(contact, cells=_RINGS) | (gap < -margin)) & np.isfinite(problem.profile)
     cells = np.flatnonzero(may_join)
     if cells.size > _MOST_CANDIDATES:
         nearest = np.where(contact, -np.inf, gap).ravel()[cells]

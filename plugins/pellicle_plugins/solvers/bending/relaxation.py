@@ -23,7 +23,7 @@ _MARGIN: Final = 48
 _RIM: Final = 2
 
 
-def relaxed(
+def relax_locally(
     problem: Problem, on_contact: OnContact, solution: InnerSolution, margin: float
 ) -> tuple[Mask, Array]:
     """Return the contact and the forces [Pa] after local relaxation of an inner solution.
@@ -47,7 +47,7 @@ def relaxed(
     size = float(np.abs(solution.pressure).max())
     floor = (gap * (-stiffness.greatest / size)).astype(np.float32)
     load = (solution.pressure / size).astype(np.float32)
-    increment = np.maximum(floor, on_contact.extended(floor[contact]))
+    increment = np.maximum(floor, on_contact.extend(floor[contact]))
     load += stiffness(increment)
     floor -= increment
     changed = contact.copy()

@@ -13,7 +13,7 @@ from pellicle.arrays import Array
 from pellicle.errors import PellicleError
 
 from .config import FitConfig
-from .config_input import described
+from .config_input import describe_indenter
 from .estimation.noise import neighbour_noise
 from .files.sources import Source
 from .population.row import Row
@@ -40,7 +40,7 @@ class Near(NamedTuple):
     """Whether what it rules out is ruled out there as well."""
 
 
-def alike(
+def representatives(
     config: FitConfig, sources: Sequence[Source], rows: Sequence[Row]
 ) -> list[tuple[Near, ...]]:
     """Return for each curve those that speak for it, the nearest first; none for these."""
@@ -53,7 +53,9 @@ def alike(
             continue
         known[i], rises[i] = _information(curve.force), (curve.position, curve.force)
         of_instrument = curve.stiffness, curve.speed, curve.time is None, curve.is_depth
-        kinds.append(kind_of(row.group, described(config.indenter_of(source)), *of_instrument))
+        kinds.append(
+            kind_of(row.group, describe_indenter(config.indenter_of(source)), *of_instrument)
+        )
     return [
         tuple(Near(j, bool(own >= _LEAST * known[j])) for j in near)
         for own, near in zip(known, neighbours(kinds, order_of(rises)), strict=True)

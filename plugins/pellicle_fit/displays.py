@@ -24,10 +24,10 @@ from .record import Record
 from .report.figures import save_figure
 from .report.population import save_population
 from .result import Fit
-from .sealed import read_sealed
+from .sealed_json import read_sealed
 
 
-def stored(file: Path) -> StoredFit | StoredFits:
+def file_display(file: Path) -> StoredFit | StoredFits:
     """Return what shows a file that ``pellicle fit`` wrote of a fit or of many."""
     with h5py.File(file) as content:
         attributes = dict(content.attrs)
@@ -69,14 +69,14 @@ class StoredFits:
 
     def __init__(self, table: Path) -> None:
         self.folder = table.parent
-        self.whole = read_sealed(table.with_suffix(".json"), Row.of_dict)
-        rows = self.whole.pop("curves")
-        self.fits = ManyFits(rows, notes=self.whole["notes"], maps=force_maps(rows)[0])
+        self.content = read_sealed(table.with_suffix(".json"), Row.of_dict)
+        rows = self.content.pop("curves")
+        self.fits = ManyFits(rows, notes=self.content["notes"], maps=force_maps(rows)[0])
 
     def show(self, *, si: bool, json: bool) -> None:
         """Print what ``pellicle fit`` printed; exit code 1 if some curves could not be fitted."""
         if json:
-            print_json(self.fits.to_dict() | self.whole)
+            print_json(self.fits.to_dict() | self.content)
         else:
             print_fits(self.fits, quiet=False, directory=self.folder, si=si)
         exit_by_fits(self.fits)

@@ -24,7 +24,7 @@ def corrections(run: Run, step: ContactStep, surroundings: Surroundings) -> Cont
     }
     measures = {f"{CORRECTED_AREA}{type_}": area for type_, area in areas.items()}
     shares = {f"{CORRECTED_FRACTION}{t}": area / run.grid.area for t, area in areas.items()}
-    return step.having(measures | shares)
+    return step.with_measures(measures | shares)
 
 
 def prescription(run: Run, step: ContactStep, surroundings: AroundContact) -> ContactStep:
@@ -32,17 +32,17 @@ def prescription(run: Run, step: ContactStep, surroundings: AroundContact) -> Co
     prescribed = run.indentation.loading.prescription
     report = report_of(prescribed, surroundings.setting, step.equilibrium)
     report |= {v.name: step.missed for v in prescribed.variables if v.name not in report}
-    return step.having(report)
+    return step.with_measures(report)
 
 
 def stiffness(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
     """Add the contact stiffness [N/m], δ being the depth of the indenter."""
-    step = responding(run, step, surroundings)
+    step = add_response(run, step, surroundings)
     assert step.response
-    return step.having({"stiffness": step.response[1]})
+    return step.with_measures({"stiffness": step.response[1]})
 
 
-def responding(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
+def add_response(run: Run, step: ContactStep, surroundings: Surroundings) -> ContactStep:
     """Return the step with its response to a change of δ, and a caveat if that is not known."""
     if step.response:
         return step
@@ -64,4 +64,4 @@ def responding(run: Run, step: ContactStep, surroundings: Surroundings) -> Conta
     missed = Caveat(Status.STIFFNESS, {"measure": measured.residual, "tolerance": tolerance})
     unknown = not measured.residual <= tolerance
     step = replace(step, response=(response, measured.value))
-    return step.having({}, [missed] if unknown else [])
+    return step.with_measures({}, [missed] if unknown else [])
