@@ -30,10 +30,16 @@ def with_ends(
     far less, in second differences, than the surface does at a cell of its edge.  All arrays have
     the grid's shape (nx, ny), gap and displacement in m.
     """
-    bent = np.fmax.reduce(np.where(contact, -_bends(displacement, boundary), 0.0), initial=0.0)
-    bends = np.abs(_bends(np.where(np.isfinite(heights), heights, np.nan), boundary))
-    smooth = bends <= _SMOOTH * bent.max(initial=0.0)
-    if contact.all() or not smooth.any():
+    bent = np.zeros(contact.shape)
+    for axis in (0, 1):
+        np.fmax(bent, -_bend(displacement, axis, boundary), out=bent, where=contact)
+    smooth, bends = [], np.zeros(contact.shape)
+    for axis in (0, 1):
+        bend = np.abs(_bend(heights, axis, boundary))
+        smooth.append(bend <= _SMOOTH * bent.max(initial=0.0))
+        np.maximum(bends, bend, out=bends)
+    del bend
+    if contact.all() or not np.any(smooth):
         return contact
     from scipy.ndimage import maximum, maximum_filter, minimum_filter
 
@@ -43,7 +49,7 @@ def with_ends(
     ends, numbers = maximum_filter(blocks, 3, mode=mode), np.arange(1, count + 1)
     edge, own = (
         np.asarray(maximum(field, labels, numbers))
-        for field, labels in ((bent, ends), (bends.max(axis=0), blocks))
+        for field, labels in ((bent, ends), (bends, blocks))
     )
     allowed = np.append(0.0, np.where(own <= _SMOOTH * edge, _OPENING * edge, 0.0))[ends]
     parts, count = label_parts(~contact & (allowed > 0), boundary, 4)
@@ -52,12 +58,15 @@ def with_ends(
     return counted
 
 
-def _bends(field: Array, boundary: Boundary) -> Array:
-    """Return the second differences along each axis, of shape (2, nx, ny); NaN at a free edge."""
-    periodic = boundary == "periodic"
-    padded = np.pad(field, 1, "wrap") if periodic else np.pad(field, 1, constant_values=np.nan)
-    rows, columns = padded[:, 1:-1], padded[1:-1]
+def _bend(field: Array, axis: int, boundary: Boundary) -> Array:
+    """Return the second differences along an axis, of shape (nx, ny); NaN at a free edge."""
+    along = np.moveaxis(field, axis, 0)
+    at = np.arange(len(along))
     with np.errstate(invalid="ignore"):
-        return np.stack(
-            [rows[:-2] - 2 * field + rows[2:], columns[:, :-2] - 2 * field + columns[:, 2:]]
-        )
+        bend = along[at - 1]
+        bend += along[(at + 1) % at.size]
+        bend -= along
+        bend -= along
+    if boundary != "periodic":
+        bend[[0, -1]] = np.nan
+    return np.moveaxis(bend, 0, axis)

@@ -29,6 +29,8 @@ _WILD = 7.0
 """Standard deviations from the mean of its neighbours beyond which a row is a spike."""
 _NORMAL = 1.4826
 """Standard deviation of normal numbers over their median absolute deviation."""
+_SHIFTED = 5.0
+"""Mean of what is no offset, over its scatter."""
 _COARSE = 2.0
 """Step of the detector, over the noise, beyond which what lies between two steps is lost."""
 _LEAST = 1e-6
@@ -142,7 +144,9 @@ def check_residuals(
     elif sums and Flaw.SLOW in flaws:
         noise = max(noise, usual, sums)
     slow = Flaw.SLOW in flaws and Flaw.DIP not in flaws and not memory
-    exponent = exponent_of(residuals[before]) if slow else 0.0
+    # An offset has all of a memory and is no noise.
+    stays = abs(np.mean(residuals[before])) < _SHIFTED * np.std(residuals[before])
+    exponent = exponent_of(residuals[before]) if slow and stays else 0.0
     return ResidualCheck(noise, frozenset(flaws), deviation, exponent)
 
 

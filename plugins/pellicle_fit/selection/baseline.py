@@ -3,27 +3,22 @@
 from collections.abc import Iterable, Sequence
 
 from pellicle_fit.effect import Effect
-from pellicle_fit.estimation.candidate import Candidate, Types
-from pellicle_fit.estimation.noise import Flaw
+from pellicle_fit.estimation.candidate import NONE, Candidate, Types
 
-from .verdict import MANY_MARGIN, Fits
-
-_BASELINE = frozenset({"offset", "slope"})
+from .verdict import BASELINE, MANY_MARGIN, Fits
 
 
-def baseline_of(best: Candidate, fits: Fits, *, inadequate: bool) -> Types:
-    """Return what of a baseline the best explanation needs, or shows to lack.
+def baseline_of(best: Candidate, fits: Fits) -> Types:
+    """Return what of a baseline the best explanation needs, if nothing without it comes near.
 
-    It is of the instrument, and no rival of what the solid does, if nothing without it comes near:
-    it then acts beside all.
+    It is of the instrument, and then no rival of what the solid does: it acts beside all.  Where a
+    slope comes with an offset but may be something else, it is weighed beside that.
     """
-    # A slope may stand for what no model describes before an offset is taken off.
-    for own in (best.types & _BASELINE, *([best.types & {"offset"}] if inadequate else [])):
+    for own in (best.types & BASELINE, best.types & {"offset"}):
         others = [fit.aic for types, fit in fits.items() if not own <= types]
         if others and min(others) - best.aic >= MANY_MARGIN:
             return own
-    lacks = any(Flaw.OFFSET in checked.flaws for checked in best.judgements)
-    return frozenset({"offset"} if lacks else ()) - best.objective.explanation.types
+    return NONE
 
 
 def named(types: Types, rivals: Iterable[Sequence[Effect]]) -> tuple[Effect, ...]:

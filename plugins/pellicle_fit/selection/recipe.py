@@ -265,9 +265,13 @@ def answer(
     best = best_of(fits.values())
     inadequate = doubtful(best.judgements)
     again = partial(answer, curves, model, sets, fix=fix, uncertainty=uncertainty)
-    if more := named(baseline_of(best, fits, inadequate=inadequate), sets):
+    needed = baseline_of(best, fits)
+    # An offset may be all that a model of what the solid does lacks.
+    untold = {"offset"} - {e.type_name for e in common} if inadequate else set[str]()
+    if more := named(needed or frozenset(untold), sets):
         found = again(common=(*common, *more), like=like)
-        return replace(found, baseline=(*baseline, *more, *found.baseline))
+        if needed or found.verdict is not Verdict.UNDESCRIBED:
+            return replace(found, baseline=(*baseline, *more, *found.baseline))
     threshold = threshold_of(min(checked.noise.freedom for checked in best.judgements))
     margin = max(MARGIN, threshold)
     decided = decision(fits, of_target, inadequate=inadequate, margin=margin)

@@ -19,6 +19,8 @@ EFFECT_MARGIN = 6.0
 MANY_MARGIN = 12.0
 """Difference of AIC by which the best of many rivals must beat no effect at all, and the best of
 many pairs all that lacks what is asked for."""
+BASELINE = frozenset({"offset", "slope"})
+"""Effects of the instrument that say nothing of the solid."""
 SMALL = 0.2
 """Share of the moduli of others below which an explanation says that E* is not held."""
 Fits = Mapping[Types, Candidate]
@@ -89,7 +91,9 @@ def leads(pair: Candidate, of_target: Types, fits: Fits) -> bool:
 
 def choice(fits: Fits, of_target: Types, decision: Decision) -> Types:
     """Return the explanation whose estimates count."""
-    known = {Verdict.NEEDED: decision.target, Verdict.OTHER: decision.other, Verdict.NO_SIGN: NONE}
+    quiet = best_of(fit for types, fit in fits.items() if types <= BASELINE)
+    none = quiet.types if fits[NONE].aic - quiet.aic >= MARGIN else NONE
+    known = {Verdict.NEEDED: decision.target, Verdict.OTHER: decision.other, Verdict.NO_SIGN: none}
     best = best_of(fits.values())
     nearest = of_target if fits[of_target].aic - best.aic < decision.margin else best.types
     return known.get(decision.verdict, nearest)

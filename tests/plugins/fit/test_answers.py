@@ -517,8 +517,10 @@ def test_a_curve_without_a_baseline_is_checked_too() -> None:
     assert holds(fit(position[inside], force[inside]).reduced_modulus, MODULUS)
 
 
-@pytest.mark.parametrize("offset", [-20.0, 0.2, 20.0])
-@pytest.mark.parametrize("kind", ["elastic", "relaxing", "adhesive"])
+@pytest.mark.parametrize(
+    ("kind", "offset"),
+    [("elastic", -20.0), ("relaxing", 0.2), ("relaxing", 20.0), ("adhesive", 0.2)],
+)
 def test_an_offset_that_the_curve_shows_changes_nothing(kind: str, offset: float) -> None:
     """A constant of the detector is no rival of what the solid does: all rivals act beside it."""
     position, force = curve()
