@@ -178,3 +178,17 @@ def test_whatever_tasks_do(executor: Executor, tmp_path: Path) -> None:
         assert isinstance(values[2], type(threading.Lock()))
     assert isinstance(values[3], Exception)
     assert "two parts" in str(values[3])
+
+
+def test_compliance_of_whole_waves(kernel: Any) -> None:
+    """Waves that are whole numbers have the compliance of the same as floats."""
+    if kernel.is_isotropic:
+        waves = np.arange(1, 6)
+        np.testing.assert_allclose(kernel.compliance(waves), kernel.compliance(1.0 * waves))
+
+
+def test_traction_at_whole_places(load: Any) -> None:
+    """Places that are whole numbers have the traction of the same as floats."""
+    if load.type_name != "map":
+        x, y = np.meshgrid(np.arange(-2, 3), np.arange(-2, 3), indexing="ij")
+        np.testing.assert_allclose(load.traction(x, y), load.traction(1.0 * x, 1.0 * y))

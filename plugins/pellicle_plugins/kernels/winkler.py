@@ -25,7 +25,7 @@ class Winkler(Isotropic):
 
     def compliance(self, q: Array) -> Array:
         """Return G(q) = 1/k [m/Pa], the same for every wave; Johnson 1985, section 4.3."""
-        return np.full_like(q, 1 / self.foundation)
+        return np.full(q.shape, 1 / self.foundation)
 
     def mean_compliance(self) -> float:
         """Return 1/k [m/Pa]."""

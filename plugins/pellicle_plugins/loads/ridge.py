@@ -49,7 +49,7 @@ class Ridge(Line):
         half = 0.5 * (self.stripe or 0.0)
         if half + 0.5 * width > right[-1, 0]:
             raise ConfigError("is wider than a period; use a larger grid.size", "stripe")
-        traction = np.zeros_like(x)
+        traction = np.zeros(x.shape)
         for line in [-half, half] if half else [0.0]:
             traction += self.line_force / width * between(x, line - width / 2, line + width / 2)
         if half:
