@@ -13,7 +13,7 @@ import numpy as np
 from pellicle.arrays import Array, Mask
 from pellicle.grid import Boundary
 
-from .masks import label_parts
+from .masks import Labels, dilate, label_parts
 
 _OPENING = 0.15
 """Opening of an end, over the bend of the surface at its edge, that may be the cells'."""
@@ -30,43 +30,62 @@ def with_ends(
     far less, in second differences, than the surface does at a cell of its edge.  All arrays have
     the grid's shape (nx, ny), gap and displacement in m.
     """
+    if contact.all():
+        return contact
     bent = np.zeros(contact.shape)
     for axis in (0, 1):
         np.fmax(bent, -_bend(displacement, axis, boundary), out=bent, where=contact)
-    smooth, bends = [], np.zeros(contact.shape)
+    most = float(bent.max(initial=0.0))
+    lines, bends = [], np.zeros(contact.shape)
     for axis in (0, 1):
         bend = np.abs(_bend(heights, axis, boundary))
-        smooth.append(bend <= _SMOOTH * bent.max(initial=0.0))
+        lines.append(_erode(bend <= _SMOOTH * most, 1 - axis, boundary))
         np.maximum(bends, bend, out=bends)
     del bend
-    if contact.all() or not np.any(smooth):
+    middles = np.logical_and(*lines)
+    opens_little = dilate(~contact & (gap <= _OPENING * most), boundary)
+    # Of rough bodies no cell that may be counted is beside a block.
+    if not np.any(middles & opens_little):
         return contact
-    from scipy.ndimage import maximum, maximum_filter, minimum_filter
-
-    mode = "wrap" if boundary == "periodic" else "nearest"
-    lines = (minimum_filter(smooth[axis], (1, 3)[:: 1 - 2 * axis], mode=mode) for axis in (0, 1))
-    blocks, count = label_parts(np.logical_and(*lines), boundary, 8)
-    ends, numbers = maximum_filter(blocks, 3, mode=mode), np.arange(1, count + 1)
-    edge, own = (
-        np.asarray(maximum(field, labels, numbers))
-        for field, labels in ((bent, ends), (bends, blocks))
-    )
-    allowed = np.append(0.0, np.where(own <= _SMOOTH * edge, _OPENING * edge, 0.0))[ends]
+    blocks, count = label_parts(middles, boundary, 8)
+    ends = np.zeros_like(blocks)
+    rows, columns = np.nonzero(blocks)
+    for shift in np.ndindex(3, 3):
+        cells = rows + shift[0] - 1, columns + shift[1] - 1
+        at = np.ravel_multi_index(cells, blocks.shape, "wrap" if boundary == "periodic" else "clip")
+        np.maximum.at(ends.reshape(-1), at, blocks[rows, columns])
+    edge, own = _largest(bent, ends, count), _largest(bends, blocks, count)
+    allowed = np.where(own <= _SMOOTH * edge, _OPENING * edge, 0.0)[ends]
     parts, count = label_parts(~contact & (allowed > 0), boundary, 4)
-    opens = np.append(True, maximum(gap > allowed, parts, np.arange(1, count + 1)))
-    counted: Mask = contact | ~opens[parts]
+    closes = _largest(gap > allowed, parts, count) == 0
+    counted: Mask = contact | (closes[parts] & (parts > 0))
     return counted
+
+
+def _largest(field: Array | Mask, labels: Labels, count: int) -> Array:
+    """Return the largest value of a field that is not negative in the cells of each label."""
+    largest, cells = np.zeros(count + 1), np.nonzero(labels)
+    np.maximum.at(largest, labels[cells], field[cells])
+    return largest
 
 
 def _bend(field: Array, axis: int, boundary: Boundary) -> Array:
     """Return the second differences along an axis, of shape (nx, ny); NaN at a free edge."""
-    along = np.moveaxis(field, axis, 0)
-    at = np.arange(len(along))
+    bend = np.empty(field.shape)
+    along, of = (np.moveaxis(array, axis, 0) for array in (field, bend))
     with np.errstate(invalid="ignore"):
-        bend = along[at - 1]
-        bend += along[(at + 1) % at.size]
-        bend -= along
-        bend -= along
-    if boundary != "periodic":
-        bend[[0, -1]] = np.nan
-    return np.moveaxis(bend, 0, axis)
+        np.add(along[:-2], along[2:], out=of[1:-1])
+        if boundary == "periodic":
+            of[0], of[-1] = along[-1] + along[1 % len(along)], along[-2 % len(along)] + along[0]
+        else:
+            of[[0, -1]] = np.nan
+        bend -= 2 * field
+    return bend
+
+
+def _erode(mask: Mask, axis: int, boundary: Boundary) -> Mask:
+    """Return the cells of a mask whose neighbours along an axis are of it, too, if there are."""
+    before, after = np.roll(mask, 1, axis), np.roll(mask, -1, axis)
+    if boundary == "free":
+        np.moveaxis(before, axis, 0)[0] = np.moveaxis(after, axis, 0)[-1] = True
+    return mask & before & after
