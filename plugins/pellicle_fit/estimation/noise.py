@@ -156,7 +156,7 @@ def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw],
     An explanation describes the rows before contact too: what is left is to have no mean, no slope
     and no dip.
     """
-    line = np.column_stack([np.ones(force.size), (base - base.mean()) / np.ptp(base)])
+    line = _line(base)
     unit = line / np.linalg.norm(line, axis=0)
     independent, flaws = neighbour_noise(force, least), set()
     limit = float(ndtri(CHANCE / len(_WINDOWS)))
@@ -168,7 +168,7 @@ def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw],
     rest = (force - line @ np.linalg.lstsq(line[far], force[far], rcond=None)[0])[far]
     freedom = max(rest.size - 2, 1)
     noise = white = Noise(max(float(np.sqrt(np.sum(rest**2) / freedom)), least), freedom)
-    sums = noise_of_bins(rest, line[far], np.arange(rest.size) * _BINS // rest.size, _BINS)
+    sums = _noise_about(rest, line[far])
     if sums and sums.exceeds(independent):
         flaws.add(Flaw.SLOW)
         noise = max(noise, sums)
@@ -186,10 +186,20 @@ def _before_contact(force: Array, base: Array, least: float) -> tuple[set[Flaw],
 def is_straight(curve: Curve) -> bool:
     """Return whether a line leaves nothing but noise of the first pass, as of a mere baseline."""
     force, base = (of[curve.first_pass] for of in (curve.force, curve.base))
-    line = np.column_stack([np.ones(force.size), (base - base.mean()) / np.ptp(base)])
+    line = _line(base)
     rest = force - line @ np.linalg.lstsq(line, force, rcond=None)[0]
-    sums = noise_of_bins(rest, line, np.arange(rest.size) * _BINS // rest.size, _BINS)
+    sums = _noise_about(rest, line)
     return not (sums and sums.exceeds(neighbour_noise(rest)))
+
+
+def _line(base: Array) -> Array:
+    """Return the columns of a constant and of a slope along the base, of shape (n, 2)."""
+    return np.column_stack([np.ones(base.size), (base - base.mean()) / np.ptp(base)])
+
+
+def _noise_about(rest: Array, line: Array) -> Noise | None:
+    """Return the noise from sums over bins of rows in their order, less a line."""
+    return noise_of_bins(rest, line, np.arange(rest.size) * _BINS // rest.size, _BINS)
 
 
 def _dip(force: Array, trend: Array) -> tuple[float, int]:

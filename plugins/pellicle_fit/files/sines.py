@@ -44,10 +44,6 @@ _NEAR, _NEIGHBOURS = 2, 20
 on each side."""
 
 
-_Span = tuple[float, float, float, float]
-"""Frequency of a sine [Hz], from and to when it is steady, and a reach beyond [s]."""
-
-
 class _Harmonics(NamedTuple):
     """A sine of base and force where it is steady."""
 
@@ -63,21 +59,32 @@ class _Harmonics(NamedTuple):
     """Its velocity over the first and over the last cycle [m/s], of shape (2,)."""
 
 
-class _Found(NamedTuple):
-    """A sine in the rows where it is steady."""
+class _Span(NamedTuple):
+    """When a sine is steady."""
 
-    rows: NDArray[np.intp]
-    parts: _Harmonics
     frequency: float
     ends: tuple[float, float]
-    """When it is steady without regard to others, from and to [s]."""
+    """From and to when [s]."""
     reach: float
     """Time [s] within which it begins and ends beyond these."""
+
+    def overlaps(self, other: _Span) -> bool:
+        """Return whether another sine is steady for a part of the time."""
+        begin, end = other.ends
+        return begin < self.ends[1] and end > self.ends[0] and other.frequency != self.frequency
+
+
+class _SteadySine(NamedTuple):
+    """A sine in rows where it and, if that is for long, all others at the time are steady."""
+
+    span: _Span
+    rows: NDArray[np.intp]
+    parts: _Harmonics
 
     def at(self, time: Array, rows: NDArray[np.intp]) -> Array:
         """Return the base [m] in some rows of the curve, at times of all, if it goes on there."""
         middle = (time[self.rows[0]] + time[self.rows[-1]]) / 2
-        turn = np.exp(2j * np.pi * self.frequency * (time[rows] - middle))
+        turn = np.exp(2j * np.pi * self.span.frequency * (time[rows] - middle))
         return np.asarray((self.parts.base * turn).real)
 
 
@@ -123,31 +130,29 @@ def separate(
     base = position + softness * force
     spans = [_steady(time, base, f, frequencies) for f in frequencies]
     measured = np.array([base, force])
-    slow, sines, of_sines = measured.copy(), list[Sine](), list[_Found]()
+    slow, sines, steady = measured.copy(), list[Sine](), list[_SteadySine]()
     for frequency, span in zip(frequencies, spans, strict=True):
-        beside = [s for s in spans if s[1] < span[2] and s[2] > span[1] and s[0] != span[0]]
-        exact, first, last = _common(span, beside)
+        beside = [other for other in spans if span.overlaps(other)]
+        first, last = _common(span, beside)
         rows = np.flatnonzero((time >= first) & (time <= last))
-        if rows.size < _FEWEST_ROWS * exact * (last - first):
+        if rows.size < _FEWEST_ROWS * span.frequency * (last - first):
             most = rows.size / (last - first) / _FEWEST_ROWS
             raise ConfigError(_too_fast(frequency, most), "frequencies")
-        at_once = [f for f, *_ in beside]
-        exact = _refined(time[rows], base[rows], exact, at_once)
+        at_once = [other.frequency for other in beside]
+        exact = _refined(time[rows], base[rows], span.frequency, at_once)
         found = _harmonics(time[rows], measured[:, rows], exact, at_once)
         if abs(found.base) < _CLEAR * found.deviations[0]:
             reason = "what oscillates is no more than noise"
             raise ConfigError(_absent(frequency, reason), "frequencies")
         slow[:, rows] -= found.sines
-        turn = np.exp(2j * np.pi * exact * lag)
-        told, deviation, amplitude = _stiffness(found, turn, softness)
+        told, deviation, amplitude = _stiffness(found, np.exp(2j * np.pi * exact * lag), softness)
         z, f, t = (float(np.mean(values[rows])) for values in (position, force, time))
-        ends = int(rows[0]), int(rows[-1])
+        ends = rows[[0, -1]].tolist()
         sines.append(Sine(exact, amplitude, told, deviation, z, f, t, *ends))
-        of_sines.append(_Found(rows, found, exact, span[1:3], span[3]))
+        steady.append(_SteadySine(span._replace(frequency=exact), rows, found))
     partly = np.zeros(time.size, bool)
-    for sine in of_sines:
-        first, last = sine.ends
-        others = [o for o in of_sines if o.ends[0] < last and o.ends[1] > first and o is not sine]
+    for sine in steady:
+        others = [other for other in steady if sine.span.overlaps(other.span)]
         begin, end = _ends(time, slow[0], sine, others)
         partly[begin : sine.rows[0]] = partly[sine.rows[-1] + 1 : end + 1] = True
     left = np.flatnonzero(~partly)
@@ -162,14 +167,11 @@ def separate(
     return SineSeparation(way - softness * load, load, left, tuple(sines), notes)
 
 
-def _common(span: _Span, beside: Sequence[_Span]) -> tuple[float, float, float]:
-    """Return when all others beside a sine are steady as well, if that is for long enough."""
-    exact, first, last, _ = span
-    begin = max([first, *(begin for _, begin, *_ in beside)])
-    end = min([last, *(end for _, _, end, _ in beside)])
-    if (end - begin) * exact < _FEWEST_CYCLES:
-        return exact, first, last
-    return exact, begin, end
+def _common(span: _Span, beside: Sequence[_Span]) -> tuple[float, float]:
+    """Return from and to when all others beside a sine are steady as well, if long enough."""
+    begins, ends = zip(*(of.ends for of in (span, *beside)), strict=True)
+    begin, end = max(begins), min(ends)
+    return (begin, end) if (end - begin) * span.frequency >= _FEWEST_CYCLES else span.ends
 
 
 def _steady(time: Array, base: Array, frequency: float, frequencies: Sequence[float]) -> _Span:
@@ -216,7 +218,7 @@ def _steady(time: Array, base: Array, frequency: float, frequencies: Sequence[fl
         raise ConfigError(_absent(frequency, "nothing oscillates steadily"), "frequencies")
     if (end - begin) * frequency < _FEWEST_CYCLES:
         raise ConfigError(_absent(frequency, "it has fewer than three cycles"), "frequencies")
-    return exact, begin, end, reach
+    return _Span(exact, (begin, end), reach)
 
 
 def _too_fast(frequency: float, most: float) -> str:
@@ -247,7 +249,9 @@ def _refined(time: Array, base: Array, frequency: float, beside: Sequence[float]
     return frequency
 
 
-def _ends(time: Array, slow: Array, sine: _Found, others: Sequence[_Found]) -> tuple[int, int]:
+def _ends(
+    time: Array, slow: Array, sine: _SteadySine, others: Sequence[_SteadySine]
+) -> tuple[int, int]:
     """Return the first and the last row in which a sine may stand.
 
     Beyond them the base without sines where they are steady, ``slow``, leaves the one that goes on,
@@ -258,9 +262,8 @@ def _ends(time: Array, slow: Array, sine: _Found, others: Sequence[_Found]) -> t
     for i, (way, level, slope) in enumerate(zip((-1, 1), parts.levels, parts.slopes, strict=True)):
         row = sine.rows[-i]
         beyond = np.arange(row + way, -1 if way < 0 else time.size, way)
-        beyond = beyond[way * (time[beyond] - sine.ends[i]) < sine.reach]
-        course = level + slope * (time[beyond] - time[row])
-        off = slow[beyond] - course - sine.at(time, beyond)
+        beyond = beyond[way * (time[beyond] - sine.span.ends[i]) < sine.span.reach]
+        off = slow[beyond] - level - slope * (time[beyond] - time[row]) - sine.at(time, beyond)
         none = np.zeros(beyond.size)
         # What is left of others where they are not steady.
         of_others = [

@@ -21,7 +21,10 @@ def baseline_of(best: Candidate, fits: Fits) -> Types:
     return NONE
 
 
-def named(types: Types, rivals: Iterable[Sequence[Effect]]) -> tuple[Effect, ...]:
-    """Return those of rivals that have some types."""
+def rivals_of(
+    types: Types, rivals: Iterable[Sequence[Effect]], common: Iterable[Effect]
+) -> tuple[Effect, ...]:
+    """Return the rivals of some types that are not among the ``common`` effects yet."""
     effects = {effect.type_name: effect for rival in rivals for effect in rival}
-    return tuple(effects[name] for name in sorted(types & effects.keys()))
+    absent = types - {effect.type_name for effect in common}
+    return tuple(effects[name] for name in sorted(absent & effects.keys()))

@@ -20,7 +20,7 @@ from pellicle_fit.estimation.intervals import End, Estimate, common_value, estim
 from pellicle_fit.estimation.noise import CHANCE, ResidualCheck
 from pellicle_fit.strangers import name_strangers, refuse_broken
 
-from .baseline import baseline_of, named
+from .baseline import baseline_of, rivals_of
 from .neighbour import Neighbour
 from .rivals import Question, at_common_noise, comparison
 from .verdict import MANY_MARGIN, MARGIN, SMALL, Decision, Verdict, choice, decision, doubtful, ties
@@ -238,8 +238,7 @@ def answer(
         refuse_broken(effect)
     curves = with_times(curves)
     target = next((effect for effect in model if not isinstance(effect, Records)), None)
-    near = like[0].baseline if like else NONE
-    baseline = named(near - {effect.type_name for effect in common}, sets)
+    baseline = rivals_of(like[0].baseline if like else NONE, sets, common)
     common = (*common, *baseline)
     kept = (*common, *(effect for effect in model if effect is not target))
     question = Question(Solid.model_validate(dict(fix or {})), target, kept, sets)
@@ -267,8 +266,8 @@ def answer(
     again = partial(answer, curves, model, sets, fix=fix, uncertainty=uncertainty)
     needed = baseline_of(best, fits)
     # An offset may be all that a model of what the solid does lacks.
-    untold = {"offset"} - {e.type_name for e in common} if inadequate else set[str]()
-    if more := named(needed or frozenset(untold), sets):
+    tried = needed or frozenset({"offset"} if inadequate else ())
+    if more := rivals_of(tried, sets, common):
         found = again(common=(*common, *more), like=like)
         if needed or found.verdict is not Verdict.UNDESCRIBED:
             return replace(found, baseline=(*baseline, *more, *found.baseline))
